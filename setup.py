@@ -1,0 +1,38 @@
+"""Install the package where ament, colcon and `ros2 run` look for it."""
+
+from glob import glob
+
+from setuptools import find_packages, setup
+
+package_name = 'dynamics_node'
+
+setup(
+    name=package_name,
+    version='0.1.0',
+    packages=find_packages(include=[package_name, f'{package_name}.*']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
+        (f'share/{package_name}', ['package.xml']),
+        (f'share/{package_name}/launch', glob('launch/*.launch.py')),
+        (f'share/{package_name}/config', glob('config/*.yaml')),
+        (f'share/{package_name}/config/robots', glob('config/robots/*.urdf')),
+    ],
+    install_requires=['setuptools', 'numpy', 'numba', 'scipy', 'yourdfpy'],
+    extras_require={
+        'demo': ['mujoco', 'matplotlib', 'rich'],
+        'test': ['pytest', 'hypothesis', 'pin', 'mujoco', 'example-robot-data'],
+    },
+    python_requires='>=3.10',
+    zip_safe=True,
+    maintainer='dynamics_node maintainers',
+    maintainer_email='maintainers@users.noreply.h-seed-ba9bdbfb.example',
+    description='Mass matrix, Coriolis matrix and gravity torque of a robot from its URDF',
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'dynamics_node = dynamics_node.ros.main:main',
+            'simulated_robot = dynamics_node.ros.demo.simulated_robot:main',
+            'demo = dynamics_node.ros.demo.demo:main',
+        ],
+    },
+)
