@@ -1,1 +1,28 @@
-"""PLACEHOLDER."""
+"""
+Inertia: 4x4 pseudo-inertia matrices of rigid bodies. No robot, no joint in here.
+
+What may change here: how a body's J is built, converted, combined and judged. Every other
+room of the package builds on these functions, so their conventions (frames, signs) are fixed.
+
+"""
+
+from .consistency import ConsistencyReport, check_physical, consistency_report
+from .integration import pseudo_inertia_by_integration
+from .pseudo_inertia import (
+    axial_moments,
+    combine,
+    inertia_tensor_at_com,
+    mass_and_com,
+    planar_moments,
+    pseudo_inertia,
+    steiner,
+    transform_pseudo_inertia,
+)
+from .solids import box, cylinder, sphere
+
+__all__ = [
+    'ConsistencyReport', 'axial_moments', 'box', 'check_physical', 'combine',
+    'consistency_report', 'cylinder', 'inertia_tensor_at_com', 'mass_and_com',
+    'planar_moments', 'pseudo_inertia', 'pseudo_inertia_by_integration', 'sphere', 'steiner',
+    'transform_pseudo_inertia',
+]

@@ -1,0 +1,47 @@
+"""The exceptions of this package: one tree, each carrying its data."""
+
+
+class DynamicsError(Exception):
+    """Base of every error that this package raises on purpose."""
+
+
+class RobotDescriptionError(DynamicsError, ValueError):
+    """
+    A robot description cannot be used; every problem found is listed.
+
+    Attributes
+    ----------
+    problems : tuple of str
+        One sentence per problem: name, expected, got.
+
+    """
+
+    def __init__(self, problems):
+        self.problems = tuple(problems)
+        count = len(self.problems)
+        head = f'the robot description has {count} problem{"s" if count > 1 else ""}'
+        super().__init__('\n  - '.join([f'{head}:', *self.problems]))
+
+
+class ArgumentError(DynamicsError, ValueError):
+    """An argument has the wrong shape, a value out of range or an unknown name."""
+
+
+class InertiaError(DynamicsError, ValueError):
+    """
+    Inertial parameters belong to no real body.
+
+    Attributes
+    ----------
+    violations : tuple of str
+        One sentence per violated condition.
+
+    """
+
+    def __init__(self, violations):
+        self.violations = tuple(violations)
+        super().__init__('inertia is not physical: ' + '; '.join(self.violations))
+
+
+class SingularMassMatrixError(DynamicsError, ArithmeticError):
+    """The mass matrix is not positive definite, so accelerations are not defined."""

@@ -1,0 +1,93 @@
+"""Strict reading of the attributes that dynamics depends on, before any value is used."""
+
+import math
+import re
+
+# What URDF writes as a number: no 'nan', no 'inf', no '1_0', no hexadecimal.
+_NUMBER = re.compile(r'[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?')
+
+_INERTIA = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
+
+# Element → (attribute, how many numbers, required). The effort and velocity limits are not
+# here: a URDF without them still has dynamics, so `limits.py` judges them.
+_LINK_NUMBERS = {
+    'inertial/origin': [('xyz', 3, False), ('rpy', 3, False)],
+    'inertial/mass': [('value', 1, True)],
+    'inertial/inertia': [(name, 1, True) for name in _INERTIA],
+}
+_JOINT_NUMBERS = {
+    'origin': [('xyz', 3, False), ('rpy', 3, False)],
+    'axis': [('xyz', 3, True)],
+    'limit': [('lower', 1, False), ('upper', 1, False)],
+    'dynamics': [('damping', 1, False), ('friction', 1, False)],
+    'mimic': [('multiplier', 1, False), ('offset', 1, False)],
+}
+_INERTIAL_PARTS = ('inertial/mass', 'inertial/inertia')
+
+
+def is_number(text):
+    """
+    Tell whether a text is a finite decimal number as URDF writes it.
+
+    Parameters
+    ----------
+    text : str
+        One attribute's value; blanks around it do not matter.
+
+    Returns
+    -------
+    bool
+        False for 'nan', 'inf', '1_0', '0x1', '1e999' and the like.
+
+    """
+    return bool(_NUMBER.fullmatch(text.strip())) and math.isfinite(float(text))
+
+
+def number_problems(robot):
+    """
+    List every attribute that is missing or is not the numbers it should be.
+
+    Parameters
+    ----------
+    robot : xml.etree.ElementTree.Element
+        The <robot> element.
+
+    Returns
+    -------
+    list of str
+        One sentence per problem: link or joint, element, attribute, expected, got.
+
+    """
+    problems = []
+    for link in robot.findall('link'):
+        where = f"link '{link.get('name')}'"
+        problems += _in_element(link, where, _LINK_NUMBERS)
+        if link.find('inertial') is not None:
+            problems += [f'{where}: <inertial> has no <{part.split("/")[1]}>'
+                         for part in _INERTIAL_PARTS if link.find(part) is None]
+    for joint in robot.findall('joint'):
+        problems += _in_element(joint, f"joint '{joint.get('name')}'", _JOINT_NUMBERS)
+    return problems
+
+
+def _in_element(parent, where, table):
+    problems = []
+    for path, attributes in table.items():
+        element = parent.find(path)
+        if element is None:
+            continue
+        for name, count, required in attributes:
+            problems += _in_attribute(element, f'{where}: <{element.tag}> {name}', name, count,
+                                      required)
+    return problems
+
+
+def _in_attribute(element, where, name, count, required):
+    text = element.get(name)
+    if text is None:
+        return [f'{where} is missing'] if required else []
+    parts = text.split()
+    if len(parts) == count and all(is_number(part) for part in parts):
+        return []
+    expected = 'a finite number' if count == 1 else f'{count} finite numbers'
+    return [f"{where}: expected {expected}, got '{text[:60]}'"]

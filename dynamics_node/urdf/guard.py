@@ -1,0 +1,90 @@
+"""What is refused before any parser builds a tree: size, depth, entities, encoding."""
+
+import re
+from xml.parsers import expat
+
+from ..errors import RobotDescriptionError
+
+MAX_BYTES = 5_000_000
+MAX_LINKS = 1_000
+MAX_DEPTH = 32
+
+
+class _RefusedError(Exception):
+    """Stops the scan at the first thing that is refused."""
+
+
+def check_text(text):
+    """
+    Refuse a description that is dangerous or hopeless to parse.
+
+    Reads the text once as a stream, without building anything and without following
+    a reference of any kind.
+
+    Parameters
+    ----------
+    text : bytes
+        URDF text.
+
+    Raises
+    ------
+    RobotDescriptionError
+        If it is not UTF-8, not XML (with the parser's line), has a document type or an entity
+        definition, or exceeds 5 MB, 1000 links or 32 levels.
+
+    """
+    if len(text) > MAX_BYTES:
+        _refuse(f'it has {len(text)} bytes, at most {MAX_BYTES} are accepted')
+    if not text.strip():
+        _refuse('it is empty: expected URDF text')
+    try:
+        text.decode('utf-8')
+    except UnicodeDecodeError as error:
+        _refuse(f'it is not UTF-8 text: byte {error.start}: {error.reason}')
+    declared = re.match(rb'\s*<\?xml[^>]*encoding\s*=\s*["\']([^"\']+)', text)
+    if declared and declared[1].lower() not in (b'utf-8', b'us-ascii', b'ascii'):
+        _refuse(f'its encoding is {declared[1].decode()}, expected UTF-8: save it as UTF-8')
+    try:
+        _Scan().run(text)
+    except _RefusedError as error:
+        _refuse(str(error))
+    except expat.ExpatError as error:
+        _refuse(f'it is not XML: {expat.ErrorString(error.code)}, '
+                f'line {error.lineno}, column {error.offset}')
+
+
+class _Scan:
+    """Counts depth and links while the stream passes."""
+
+    def __init__(self):
+        self.depth = 0
+        self.links = 0
+
+    def run(self, text):
+        parser = expat.ParserCreate(encoding='utf-8')
+        parser.StartElementHandler = self._start
+        parser.EndElementHandler = self._end
+        parser.StartDoctypeDeclHandler = self._doctype
+        parser.Parse(text, True)
+
+    def _start(self, tag, attributes):
+        self.depth += 1
+        if self.depth == 1 and tag != 'robot':
+            raise _RefusedError(f'its root element is <{tag}>, expected <robot>; '
+                                'a xacro file must be expanded first')
+        if self.depth > MAX_DEPTH:
+            raise _RefusedError(f'its elements are nested more than {MAX_DEPTH} deep')
+        if self.depth == 2 and tag == 'link':
+            self.links += 1
+            if self.links > MAX_LINKS:
+                raise _RefusedError(f'it has more than {MAX_LINKS} links')
+
+    def _end(self, tag):
+        self.depth -= 1
+
+    def _doctype(self, *_):
+        raise _RefusedError('it has a DOCTYPE, which is not accepted: remove it')
+
+
+def _refuse(problem):
+    raise RobotDescriptionError([problem])

@@ -1,0 +1,166 @@
+"""From URDF to a checked robot description."""
+
+import io
+import math
+from xml.etree import ElementTree
+
+import numpy as np
+
+from ..errors import RobotDescriptionError
+from .attributes import is_number, number_problems
+from .description import Inertial, Joint, Link, Mimic, RobotDescription
+from .guard import check_text
+from .inertial import inertial_findings
+from .source import load_text
+from .structure import moved_links, root_link, structure_problems
+
+# What dynamics reads. Everything else (visuals, collisions, meshes, plugins) is dropped before
+# the text reaches yourdfpy, so no mesh address is ever looked at.
+_PARTS = {
+    'link': {'inertial'},
+    'joint': {'parent', 'child', 'origin', 'axis', 'limit', 'dynamics', 'mimic'},
+}
+
+
+def read_urdf(source):
+    """
+    Read a URDF and check everything that dynamics depends on.
+
+    Parameters
+    ----------
+    source : str, bytes or os.PathLike
+        A path or the text itself.
+
+    Returns
+    -------
+    RobotDescription
+        With warnings for what was accepted but looks wrong.
+
+    Raises
+    ------
+    RobotDescriptionError
+        With all problems at once: link or joint, attribute, expected, got.
+
+    """
+    text = load_text(source)
+    check_text(text)
+    robot = ElementTree.fromstring(text)
+    _strip(robot)
+    problems = structure_problems(robot) + number_problems(robot)
+    if problems:
+        raise RobotDescriptionError(problems)
+    limits = _take_soft_limits(robot)
+    parsed = _parse(robot)
+    links, link_problems, link_warnings = _links(parsed.links, moved_links(robot))
+    joints, joint_problems, joint_warnings = _joints(parsed.joints, limits)
+    if link_problems or joint_problems:
+        raise RobotDescriptionError(link_problems + joint_problems)
+    return RobotDescription(parsed.name, root_link(robot), tuple(links), tuple(joints),
+                            tuple(link_warnings + joint_warnings))
+
+
+def _strip(robot):
+    for element in list(robot):
+        if element.tag not in _PARTS:
+            robot.remove(element)
+            continue
+        for part in list(element):
+            if part.tag not in _PARTS[element.tag]:
+                element.remove(part)
+    if not robot.get('name'):
+        robot.set('name', 'robot')
+
+
+def _take_soft_limits(robot):
+    # A URDF without usable effort or velocity limits still has dynamics: these two may be
+    # missing, 0, 'inf' or nonsense, and then they are unknown (NaN). yourdfpy would call
+    # float() on them, so they are taken out before it sees them.
+    limits = {}
+    for joint in robot.findall('joint'):
+        limit = joint.find('limit')
+        attributes = {} if limit is None else limit.attrib
+        limits[joint.get('name')] = {name: _positive_or_nan(attributes.pop(name, ''))
+                                     for name in ('effort', 'velocity')}
+    return limits
+
+
+def _positive_or_nan(text):
+    value = float(text) if is_number(text) else math.nan
+    return value if value > 0.0 else math.nan
+
+
+def _parse(robot):
+    # Imported here because it takes a second (trimesh), which `import dynamics_node` must not.
+    from yourdfpy import URDF
+    return URDF.load(io.BytesIO(ElementTree.tostring(robot)), build_scene_graph=False,
+                     load_meshes=False).robot
+
+
+def _links(parsed, moved):
+    links, problems, warnings = [], [], []
+    for link in parsed:
+        inertial = None
+        if link.inertial is not None:
+            inertial = Inertial(float(link.inertial.mass), _placement(link.inertial.origin),
+                                np.array(link.inertial.inertia, dtype=float))
+            found = inertial_findings(link.name, inertial, link.name in moved)
+            problems += found[0]
+            warnings += found[1]
+        links.append(Link(link.name, inertial))
+    return links, problems, warnings
+
+
+def _joints(parsed, limits):
+    joints, problems, warnings = [], [], []
+    for joint in parsed:
+        axis, problem, warning = _axis(joint)
+        problems += problem
+        warnings += warning
+        lower, upper = _position_limits(joint)
+        joints.append(Joint(
+            joint.name, joint.type, joint.parent, joint.child, _placement(joint.origin), axis,
+            lower, upper, **limits[joint.name],
+            damping=_number(joint.dynamics, 'damping'),
+            friction=_number(joint.dynamics, 'friction'), mimic=_mimic(joint)))
+    return joints, problems, warnings
+
+
+def _axis(joint):
+    default = np.array([1.0, 0.0, 0.0])
+    if joint.type == 'fixed':
+        return default, [], []
+    where = f"joint '{joint.name}': axis"
+    if joint.axis is None:
+        return default, [], [f'{where} is missing, (1, 0, 0) is used']
+    axis = np.array(joint.axis, dtype=float)
+    length = np.linalg.norm(axis)
+    if not length > 1e-9:
+        return default, [f'{where} has length {length:.3g}, must be a direction'], []
+    if abs(length - 1.0) > 1e-6:
+        return axis / length, [], [f'{where} has length {length:.6g}, it is normalised to 1']
+    return axis / length, [], []
+
+
+def _position_limits(joint):
+    limit = joint.limit
+    if limit is None or joint.type == 'continuous':
+        return -math.inf, math.inf
+    lower = 0.0 if limit.lower is None else limit.lower
+    upper = 0.0 if limit.upper is None else limit.upper
+    return (lower, upper) if lower < upper else (-math.inf, math.inf)
+
+
+def _number(dynamics, name):
+    # yourdfpy returns these as text; number_problems has checked it.
+    value = None if dynamics is None else getattr(dynamics, name)
+    return 0.0 if value is None else float(value)
+
+
+def _mimic(joint):
+    if joint.mimic is None or joint.type == 'fixed':
+        return None
+    return Mimic(joint.mimic.joint, float(joint.mimic.multiplier), float(joint.mimic.offset))
+
+
+def _placement(matrix):
+    return np.eye(4) if matrix is None else np.array(matrix, dtype=float)

@@ -1,0 +1,134 @@
+"""The shape of the robot: names, one tree, joint types, mimic chains."""
+
+from collections import Counter
+
+SUPPORTED_TYPES = ('revolute', 'continuous', 'prismatic', 'fixed')
+UNSUPPORTED_TYPES = ('floating', 'planar')
+
+
+def structure_problems(robot):
+    """
+    List everything that keeps the links and joints from being one tree.
+
+    Parameters
+    ----------
+    robot : xml.etree.ElementTree.Element
+        The <robot> element.
+
+    Returns
+    -------
+    list of str
+        One sentence per problem; empty means exactly one root, no cycle, known names, joint
+        types that are supported, and mimic chains that end at a movable joint.
+
+    """
+    links = [link.get('name') for link in robot.findall('link')]
+    joints = robot.findall('joint')
+    problems = _naming_problems('link', links)
+    problems += _naming_problems('joint', [joint.get('name') for joint in joints])
+    if not links:
+        problems.append('it has no <link>')
+    for joint in joints:
+        problems += _joint_problems(joint, set(links))
+    if not problems:
+        problems += _tree_problems(links, joints)
+        problems += _mimic_problems(joints)
+    return problems
+
+
+def root_link(robot):
+    """Return the name of the link that is no joint's child; the structure must be sound."""
+    children = {joint.find('child').get('link') for joint in robot.findall('joint')}
+    return next(link.get('name') for link in robot.findall('link')
+                if link.get('name') not in children)
+
+
+def moved_links(robot):
+    """Return the set of links that any movable joint carries; the structure must be sound."""
+    joint_of = {joint.find('child').get('link'): joint for joint in robot.findall('joint')}
+    moved = set()
+    for name in joint_of:
+        link = name
+        while link in joint_of and name not in moved:
+            if joint_of[link].get('type') != 'fixed':
+                moved.add(name)
+            link = joint_of[link].find('parent').get('link')
+    return moved
+
+
+def _naming_problems(kind, names):
+    problems = [f'a <{kind}> has no name' for name in names if not name]
+    return problems + [f"{kind} '{name}' is defined {count} times"
+                       for name, count in Counter(names).items() if name and count > 1]
+
+
+def _joint_problems(joint, links):
+    where = f"joint '{joint.get('name')}'"
+    problems = []
+    kind = joint.get('type')
+    if kind in UNSUPPORTED_TYPES:
+        problems.append(f'{where}: type {kind} is not supported; use one of '
+                        f'{", ".join(SUPPORTED_TYPES)}')
+    elif kind not in SUPPORTED_TYPES:
+        problems.append(f"{where}: type '{kind}' is unknown; use one of "
+                        f'{", ".join(SUPPORTED_TYPES)}')
+    for end in ('parent', 'child'):
+        element = joint.find(end)
+        name = None if element is None else element.get('link')
+        if name is None:
+            problems.append(f'{where}: <{end} link="..."/> is missing')
+        elif name not in links:
+            problems.append(f"{where}: {end} link '{name}' does not exist")
+    return problems
+
+
+def _tree_problems(links, joints):
+    parents = [(joint.get('name'), joint.find('parent').get('link'),
+                joint.find('child').get('link')) for joint in joints]
+    problems = [f"link '{name}' is the child of {count} joints, must be of one"
+                for name, count in Counter(child for _, _, child in parents).items()
+                if count > 1]
+    parent_of = {child: parent for _, parent, child in parents}
+    roots = [name for name in links if name not in parent_of]
+    if len(roots) > 1:
+        problems.append(f'it has {len(roots)} root links, must be one: '
+                        + ', '.join(f"'{name}'" for name in roots))
+    cycle = _cycle(parent_of)
+    if cycle:
+        problems.append('its links form a cycle: ' + ' -> '.join(f"'{name}'" for name in cycle))
+    return problems
+
+
+def _mimic_problems(joints):
+    movable = {joint.get('name') for joint in joints if joint.get('type') != 'fixed'}
+    leader_of = {}
+    problems = []
+    for joint in joints:
+        mimic = joint.find('mimic')
+        if mimic is None or joint.get('type') == 'fixed':
+            continue
+        name, leader = joint.get('name'), mimic.get('joint')
+        if leader not in movable:
+            problems.append(f"joint '{name}': mimics '{leader}', which is not a movable joint")
+        else:
+            leader_of[name] = leader
+    cycle = _cycle(leader_of)
+    if cycle:
+        problems.append('mimic joints form a cycle: '
+                        + ' -> '.join(f"'{name}'" for name in cycle))
+    return problems
+
+
+def _cycle(next_of):
+    """Return the names along the first cycle, the first one repeated at the end, or []."""
+    done = set()
+    for start in next_of:
+        path = []
+        name = start
+        while name in next_of and name not in done:
+            done.add(name)
+            path.append(name)
+            name = next_of[name]
+        if name in path:
+            return [*path[path.index(name):], name]
+    return []
