@@ -1,1 +1,11 @@
-"""PLACEHOLDER."""
+"""
+The library's face: checked arrays and words in, kernels underneath.
+
+What may change here: argument checks, shapes, and quantities composed from D, C and G.
+
+"""
+
+from .joint_selection import JointSelection
+from .robot_model import DynamicsTerms, RobotModel
+
+__all__ = ['DynamicsTerms', 'JointSelection', 'RobotModel']

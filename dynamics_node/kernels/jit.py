@@ -1,0 +1,20 @@
+"""The one place that decides how kernels are compiled."""
+
+import numba
+
+# fastmath stays off: it may assume that there is no NaN, and the checks for NaN live on it.
+# error_model 'numpy' follows IEEE 754 on division instead of raising in compiled code.
+_OPTIONS = {'nogil': True, 'error_model': 'numpy', 'fastmath': False}
+
+
+def compiled(function):
+    """
+    Compile a kernel on its first call and keep the machine code on disk.
+
+    Where no folder for the cache can be written, the code is compiled anew in each process.
+
+    """
+    try:
+        return numba.njit(cache=True, **_OPTIONS)(function)
+    except RuntimeError:  # numba: no locator available
+        return numba.njit(**_OPTIONS)(function)

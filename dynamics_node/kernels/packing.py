@@ -1,0 +1,72 @@
+"""How a kinematic tree is handed to the kernels: two arrays, so that a call costs little."""
+
+import numpy as np
+
+# Columns of `structure`, one row per body.
+PARENT, KIND, COORDINATE = range(3)
+
+# Columns of `numbers`, one row per body. ROTATION is row-major; INERTIA holds the ten numbers
+# of J: mass, first moments (3), second moments xx, xy, xz, yy, yz, zz.
+ROTATION = 0
+TRANSLATION = 9
+AXIS = 12
+INERTIA = 15
+MULTIPLIER = 25
+OFFSET = 26
+WIDTH = 27
+
+
+def pack(tree, gravity):
+    """
+    Pack a tree and the gravity acceleration for the kernels.
+
+    Parameters
+    ----------
+    tree : KinematicTree
+        N bodies.
+    gravity : numpy.ndarray, shape (3,)
+        m/s², base frame, points down.
+
+    Returns
+    -------
+    structure : numpy.ndarray of int64, shape (N, 3)
+        Columns PARENT, KIND, COORDINATE.
+    numbers : numpy.ndarray of float64, shape (N + 1, WIDTH)
+        One row per body; the last row holds gravity in its first three columns.
+
+    """
+    count = len(tree.body_names)
+    structure = np.empty((count, 3), dtype=np.int64)
+    structure[:, PARENT] = tree.parent
+    structure[:, KIND] = tree.kind
+    structure[:, COORDINATE] = tree.coordinate
+    numbers = np.zeros((count + 1, WIDTH))
+    body = numbers[:count]
+    body[:, ROTATION:TRANSLATION] = tree.placement[:, :3, :3].reshape(count, 9)
+    body[:, TRANSLATION:AXIS] = tree.placement[:, :3, 3]
+    body[:, AXIS:INERTIA] = tree.axis
+    body[:, INERTIA:MULTIPLIER] = ten_numbers(tree.inertia)
+    body[:, MULTIPLIER] = tree.multiplier
+    body[:, OFFSET] = tree.offset
+    numbers[count, :3] = gravity
+    structure.flags.writeable = numbers.flags.writeable = False
+    return structure, numbers
+
+
+def ten_numbers(inertia):
+    """
+    Return the ten different numbers of pseudo-inertia matrices.
+
+    Parameters
+    ----------
+    inertia : numpy.ndarray, shape (N, 4, 4)
+
+    Returns
+    -------
+    numpy.ndarray, shape (N, 10)
+        m, hx, hy, hz, xx, xy, xz, yy, yz, zz.
+
+    """
+    rows = [3, 0, 1, 2, 0, 0, 0, 1, 1, 2]
+    columns = [3, 3, 3, 3, 0, 1, 2, 1, 2, 2]
+    return inertia[:, rows, columns]

@@ -1,0 +1,27 @@
+"""
+Compile every kernel once: `python -m dynamics_node.kernels.warm_up`.
+
+The kernels do not depend on the robot, so after this no robot ever waits for the compiler.
+
+"""
+
+import numpy as np
+
+from . import closed_form
+from .packing import WIDTH
+
+
+def warm_up():
+    """Compile the kernels, or load them from the cache on disk."""
+    structure = np.array([[-1, 0, 0]], dtype=np.int64)
+    numbers = np.zeros((2, WIDTH))
+    # As `pack` hands them over: numba compiles read-only arrays as a type of their own.
+    structure.flags.writeable = numbers.flags.writeable = False
+    q = np.zeros((1, 1))
+    closed_form.dynamics(structure, numbers, q, q, np.empty((1, 4)))
+    closed_form.mass_matrix(structure, numbers, q, np.empty((1, 1, 1)))
+    closed_form.gravity_torque(structure, numbers, q, np.empty((1, 2)))
+
+
+if __name__ == '__main__':
+    warm_up()

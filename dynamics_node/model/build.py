@@ -1,0 +1,102 @@
+"""From a checked description to the tree of moving bodies."""
+
+import numpy as np
+
+from ..inertia import combine
+from ..urdf.inertial import link_pseudo_inertia
+from .mimic import resolve_mimic
+from .tree import PRISMATIC, REVOLUTE, KinematicTree, LinkFrame
+
+
+def build_tree(description):
+    """
+    Lump fixed links into the bodies that move and number the joints.
+
+    Parameters
+    ----------
+    description : RobotDescription
+
+    Returns
+    -------
+    KinematicTree
+        Its warnings are the description's and one that lists moving bodies without mass.
+
+    References
+    ----------
+    docs/mathematics.md, equations (5) and (19).
+
+    """
+    moving, links = _walk(description)
+    inertia = _lumped(description, links, len(moving))
+    leaders = resolve_mimic(moving)
+    free = [joint for joint in description.joints if joint.is_movable and joint.mimic is None]
+    index = {joint.name: i for i, joint in enumerate(free)}
+    resolved = [leaders[joint.name] for joint in moving]
+    return KinematicTree(
+        root=description.root,
+        joint_names=tuple(index),
+        body_names=tuple(joint.name for joint in moving),
+        parent=np.array([links[joint.parent].body for joint in moving], dtype=np.int64),
+        kind=np.array([PRISMATIC if joint.type == 'prismatic' else REVOLUTE
+                       for joint in moving], dtype=np.int64),
+        coordinate=np.array([index[leader] for leader, _, _ in resolved], dtype=np.int64),
+        multiplier=np.array([multiplier for _, multiplier, _ in resolved], dtype=float),
+        offset=np.array([offset for _, _, offset in resolved], dtype=float),
+        placement=_stack([links[joint.parent].placement @ joint.placement for joint in moving],
+                         (4, 4)),
+        axis=_stack([joint.axis for joint in moving], (3,)),
+        inertia=inertia[:-1],
+        base_inertia=inertia[-1],
+        links=links,
+        limits=_stack([(joint.lower, joint.upper, joint.velocity, joint.effort)
+                       for joint in free], (4,)),
+        dynamics=_stack([(joint.damping, joint.friction) for joint in free], (2,)),
+        is_continuous=tuple(joint.type == 'continuous' for joint in free),
+        is_revolute=tuple(joint.type != 'prismatic' for joint in free),
+        warnings=description.warnings + _massless(moving, inertia),
+    )
+
+
+def _walk(description):
+    # Depth first in the order of the URDF; a stack, because a chain may be as long as the
+    # recursion limit. The placement of a link is relative to the body that carries it.
+    children = {}
+    for joint in description.joints:
+        children.setdefault(joint.parent, []).append(joint)
+    moving = []
+    links = {description.root: LinkFrame(-1, np.eye(4))}
+    stack = children.get(description.root, [])[::-1]
+    while stack:
+        joint = stack.pop()
+        if joint.is_movable:
+            links[joint.child] = LinkFrame(len(moving), np.eye(4))
+            moving.append(joint)
+        else:
+            parent = links[joint.parent]
+            links[joint.child] = LinkFrame(parent.body, parent.placement @ joint.placement)
+        stack += children.get(joint.child, [])[::-1]
+    return moving, links
+
+
+def _lumped(description, links, count):
+    # Row -1 is the base.
+    parts = [[] for _ in range(count + 1)]
+    for link in description.links:
+        if link.inertial is None:
+            continue
+        frame = links[link.name]
+        parts[frame.body].append((link_pseudo_inertia(link.inertial), frame.placement))
+    return np.array([combine(bodies) for bodies in parts])
+
+
+def _massless(moving, inertia):
+    names = [joint.child for joint, matrix in zip(moving, inertia, strict=False)
+             if not matrix[3, 3] > 0.0]
+    if not names:
+        return ()
+    return ('moving links without mass (add an <inertial>, their weight is not compensated): '
+            + ', '.join(names),)
+
+
+def _stack(rows, shape):
+    return np.array(rows, dtype=float).reshape(len(rows), *shape)
