@@ -1,1 +1,18 @@
-"""PLACEHOLDER."""
+"""
+The path to the arm: measured states in, commands out, and everything that may say no.
+
+Plain classes with the time passed in: no ROS, no thread, no clock of their own. What may change
+here: when output is allowed and how it starts, is limited and stops. Nothing may publish an
+effort that did not pass `EffortLimiter`.
+
+"""
+
+from .channel import OutputChannel
+from .joint_state_buffer import JointStateBuffer, RejectedStateError
+from .limiter import EffortLimiter, InvalidEffortError
+from .state_machine import OutputState, OutputStateMachine
+
+__all__ = [
+    'EffortLimiter', 'InvalidEffortError', 'JointStateBuffer', 'OutputChannel', 'OutputState',
+    'OutputStateMachine', 'RejectedStateError',
+]

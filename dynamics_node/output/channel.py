@@ -1,0 +1,186 @@
+"""The output as a whole: state machine, limiter and watchdog, one command at a time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .limiter import EffortLimiter, InvalidEffortError
+from .state_machine import OutputState, OutputStateMachine
+
+STOP_BEHAVIORS = ('ramp_to_zero', 'hold', 'zero')
+
+
+@dataclass(frozen=True)
+class OutputSettings:
+    """
+    How the output starts, stops and is limited.
+
+    Attributes
+    ----------
+    state_timeout : float
+        Largest age of the joint state, s.
+    start_ramp, stop_ramp : float
+        Durations, s.
+    stop_behavior : str
+        'ramp_to_zero', 'zero' (as fast as the rate limits allow) or 'hold' (the last command
+        stays in force).
+
+    """
+
+    state_timeout: float
+    start_ramp: float
+    stop_ramp: float
+    stop_behavior: str
+
+
+class OutputChannel:
+    """
+    Decides for every model effort and every tick whether a command goes out, and which.
+
+    Every method takes the time of one steady clock. A returned command must be published; None
+    means that nothing may be.
+
+    Attributes
+    ----------
+    machine : OutputStateMachine
+    limiter : EffortLimiter or None
+        None until a robot with limits is known.
+    settings : OutputSettings
+
+    """
+
+    def __init__(self, settings, on_change=None):
+        """Start with output off and no limits."""
+        self.machine = OutputStateMachine(on_change)
+        self.limiter = None
+        self.settings = settings
+        self._last_time = 0.0
+        self._stop_from = np.zeros(0)
+
+    def set_limiter(self, limits, rate_limits, scale):
+        """
+        Take new limits; the last command stays in force, so nothing jumps.
+
+        Parameters
+        ----------
+        limits, rate_limits, scale : numpy.ndarray, shape (m,)
+            See `EffortLimiter`.
+
+        """
+        last = self.limiter
+        self.limiter = EffortLimiter(limits, rate_limits, scale)
+        if last is not None and self.machine.is_on:
+            self.limiter.carry_on_from(last)
+
+    def enable(self, now):
+        """
+        Begin to publish commands, from zero.
+
+        Parameters
+        ----------
+        now : float
+            s.
+
+        Returns
+        -------
+        bool
+            False if the output is on already or still stopping.
+
+        """
+        if not self.machine.enable(now, self.settings.start_ramp):
+            return False
+        self.limiter.reset()
+        self._last_time = now
+        return True
+
+    def stop(self, now, reason, is_fault=False, within=None):
+        """
+        Begin to stop, as `settings.stop_behavior` says.
+
+        Parameters
+        ----------
+        now : float
+            s.
+        reason : str
+            For people.
+        is_fault : bool
+            Whether the stop ends in FAULT.
+        within : float, optional
+            Longest time that the stop may take, s: when the process has to end.
+
+        """
+        ramp = self.settings.stop_ramp if self.settings.stop_behavior == 'ramp_to_zero' else 0.0
+        if within is not None:
+            ramp = min(ramp, within)
+            self.machine.hasten(now, within)
+        if self.machine.is_driving:
+            self._stop_from = self.limiter.last
+        self.machine.stop(now, ramp, reason, is_fault)
+
+    def on_effort(self, now, effort):
+        """
+        Take a model effort computed from a fresh state.
+
+        Parameters
+        ----------
+        now : float
+            s.
+        effort : numpy.ndarray, shape (m,)
+            N m or N.
+
+        Returns
+        -------
+        numpy.ndarray, shape (m,), or None
+
+        """
+        if not self.machine.is_driving:
+            return None
+        try:
+            command = self.limiter.command(effort, self.machine.progress(now), self._dt(now))
+        except InvalidEffortError as error:
+            self.stop(now, f'invalid effort: {error}', is_fault=True)
+            return None
+        self._last_time = now
+        self.machine.advance(now)
+        return command
+
+    def tick(self, now, state_age):
+        """
+        Watch the age of the joint state, and walk the stop to its end.
+
+        Parameters
+        ----------
+        now : float
+            s.
+        state_age : float
+            Age of the newest usable joint state, s.
+
+        Returns
+        -------
+        numpy.ndarray, shape (m,), or None
+
+        """
+        timeout = self.settings.state_timeout
+        if self.machine.is_driving and state_age > timeout:
+            self.stop(now, f'joint_states stale: last {state_age:.3f} s ago, '
+                           f'limit {timeout:.3f} s', is_fault=True)
+        if self.machine.state != OutputState.STOPPING:
+            return None
+        return self._stopping(now)
+
+    def _stopping(self, now):
+        if self.settings.stop_behavior == 'hold':
+            self.machine.advance(now)
+            return self.limiter.last
+        try:
+            command = self.limiter.fade(self._stop_from, 1.0 - self.machine.progress(now),
+                                        self._dt(now))
+        except InvalidEffortError:  # limits that are no numbers: a stop has to end all the same
+            command = np.zeros(self._stop_from.size)
+        self._last_time = now
+        if not command.any():
+            self.machine.advance(now)
+        return command
+
+    def _dt(self, now):
+        return now - self._last_time
