@@ -1,0 +1,210 @@
+"""The command topic: enable service, output state, watchdog and the publisher itself."""
+
+import math
+import time
+
+import numpy as np
+from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import SetBool
+
+from dynamics_interfaces.msg import OutputState as OutputStateMessage
+
+from ..output import OutputChannel
+from ..output.channel import OutputSettings
+from .guard import guarded, guarded_service
+from .messages import to_field
+from .qos import COMMAND, OUTPUT_STATE
+
+# How often the watchdog looks and a stop sends its next command, s.
+TICK = 0.01
+
+
+class CommandOutput:
+    """
+    Connects an `OutputChannel` to ROS.
+
+    Attributes
+    ----------
+    channel : OutputChannel
+    commands : int
+        Commands published so far.
+
+    """
+
+    def __init__(self, node, parameters, get_robot, state_topic, on_change):
+        """
+        Create publishers, service and watchdog; the output is off.
+
+        Parameters
+        ----------
+        node : rclpy.node.Node
+        parameters : Parameters
+        get_robot : callable() -> Robot or None
+        state_topic : str
+            Resolved name of the joint state topic.
+        on_change : callable()
+            Called after every change of the output's state.
+
+        """
+        self.logger = node.get_logger()
+        self._node = node
+        self._parameters = parameters
+        self._get_robot = get_robot
+        self._state_topic = state_topic
+        self._on_change = on_change
+        self.commands = 0
+        self._message = Float64MultiArray()
+        self._publisher = node.create_publisher(
+            Float64MultiArray, parameters['command_topic'], COMMAND)
+        self._state_publisher = node.create_publisher(OutputStateMessage, '~/state', OUTPUT_STATE)
+        self.channel = OutputChannel(self._settings(), self._changed)
+        # On the steady clock: it must watch while simulation time stands still.
+        self._watchdog = node.create_timer(TICK, self._tick,
+                                           clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._watchdog.cancel()
+        node.create_service(SetBool, '~/enable', self._enable_requested)
+        self._changed(self.channel.machine.state, self.channel.machine.reason)
+
+    @property
+    def topic(self):
+        """Resolved name of the command topic."""
+        return self._publisher.topic_name
+
+    def on_effort(self, now, effort):
+        """Publish the command for a model effort of the chosen joints, if output is on."""
+        command = self.channel.on_effort(now, effort)
+        if command is not None:
+            self._publish(command)
+            if self.channel.limiter.saturated.any():
+                self._warn_saturated(effort)
+
+    def configure(self):
+        """Take over parameters and the limits of the robot in force."""
+        self.channel.settings = self._settings()
+        robot = self._get_robot()
+        if robot is None:
+            return
+        count = len(robot.joint_names)
+        limits = robot.effort_limits(self._parameters['effort_limits'])
+        rates = self._parameters['effort_rate_limits']
+        scale = self._parameters['effort_scale']
+        self.channel.set_limiter(limits, np.array(rates) if rates else limits / 0.1,
+                                 np.array(scale) if scale else np.ones(count))
+
+    def stop(self, reason, is_fault=False, within=None):
+        """Begin to stop; see `OutputChannel.stop`."""
+        self.channel.stop(time.monotonic(), reason, is_fault, within)
+
+    def on_internal_error(self, message):
+        """Stop after an exception in a callback of the torque path."""
+        self.stop(message, is_fault=True)
+
+    def flush(self, timeout):
+        """Wait until everybody who listens has the last command, at most `timeout` seconds."""
+        self._publisher.wait_for_all_acked(Duration(seconds=timeout))
+
+    def enable(self):
+        """
+        Switch the output on if nothing speaks against it.
+
+        Returns
+        -------
+        (bool, str)
+            Accepted, and the reasons why not or what to know.
+
+        """
+        machine = self.channel.machine
+        if machine.is_driving:
+            return True, f'already enabled: {machine.name}'
+        if machine.is_on:
+            return False, 'still stopping: ask again when the state is READY'
+        reasons = self.refusals()
+        if reasons:
+            return False, 'refused: ' + '; '.join(reasons)
+        self.channel.enable(time.monotonic())
+        text = f'enabled: efforts go to {self.topic}'
+        if self._publisher.get_subscription_count() == 0:
+            text += (', but nobody listens there: is the effort controller active and the '
+                     'parameter command_topic right?')
+            self.logger.warning(text)
+        return True, text
+
+    def refusals(self):
+        """Return every reason why the output must not be enabled now, as a list of str."""
+        robot = self._get_robot()
+        if robot is None:
+            return ['no robot description yet']
+        reasons = []
+        timeout = self._parameters['state_timeout']
+        stale = robot.buffer.stale_joints(time.monotonic(), timeout)
+        if stale:
+            reasons.append(f'no joint state within {timeout:g} s for {", ".join(stale)}')
+        elif not robot.is_mass_matrix_positive_definite():
+            reasons.append('the mass matrix is not positive definite: check the <inertial> of '
+                           'the moving links')
+        unlimited = robot.unlimited_joints(self._parameters['effort_limits'])
+        if unlimited:
+            reasons.append(f'no effort limit for {", ".join(unlimited)}: set the parameter '
+                           'effort_limits')
+        return reasons + self._graph_refusals()
+
+    def _graph_refusals(self):
+        reasons = []
+        others = self._node.count_publishers(self.topic) - 1
+        if others > 0:
+            reasons.append(f'{others} other publisher(s) on {self.topic}: two sources of effort '
+                           'would fight')
+        sources = self._node.count_publishers(self._state_topic)
+        if sources > 1 and not self._parameters['allow_several_state_publishers']:
+            reasons.append(f'{sources} publishers on {self._state_topic}: stop the others (a '
+                           'forgotten joint_state_publisher?) or set '
+                           'allow_several_state_publishers')
+        return reasons
+
+    @guarded_service
+    def _enable_requested(self, request, response):
+        if request.data:
+            response.success, response.message = self.enable()
+        elif self.channel.machine.is_driving:
+            self.stop('disabled on request')
+            response.success, response.message = True, 'stopping'
+        else:
+            response.success = True
+            response.message = f'already off: {self.channel.machine.name}'
+        return response
+
+    @guarded
+    def _tick(self):
+        now = time.monotonic()
+        robot = self._get_robot()
+        age = robot.buffer.age(now) if robot else math.inf
+        command = self.channel.tick(now, age)
+        if command is not None:
+            self._publish(command)
+
+    def _publish(self, command):
+        self._message.data = to_field(command)
+        self._publisher.publish(self._message)
+        self.commands += 1
+
+    def _changed(self, state, reason):
+        (self._watchdog.reset if self.channel.machine.is_on else self._watchdog.cancel)()
+        message = OutputStateMessage(state=int(state), name=state.name, reason=reason)
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._state_publisher.publish(message)
+        (self.logger.error if state.name == 'FAULT' else self.logger.info)(
+            f'output {state.name}: {reason}')
+        self._on_change()
+
+    def _warn_saturated(self, effort):
+        limiter = self.channel.limiter
+        names = self._get_robot().joint_names
+        which = '; '.join(f'{names[i]}: {effort[i]:.6g} limited to {limiter.last[i]:.6g}'
+                          for i in np.flatnonzero(limiter.saturated))
+        self.logger.warning(f'effort above its limit: {which}', throttle_duration_sec=1.0)
+
+    def _settings(self):
+        return OutputSettings(**{name: self._parameters[name] for name in (
+            'state_timeout', 'start_ramp', 'stop_ramp', 'stop_behavior')})

@@ -1,0 +1,54 @@
+"""Where the robot description comes from: parameter, file or topic, in this order."""
+
+from std_msgs.msg import String
+
+from .guard import guarded
+from .qos import ROBOT_DESCRIPTION
+
+
+class DescriptionSource:
+    """
+    Delivers each new description once.
+
+    The parameter `robot_description` wins over `robot_description_file`, and both over the
+    topic; the node's log says which one it was.
+
+    """
+
+    def __init__(self, node, parameters, on_description, on_internal_error):
+        """
+        Deliver what is there and listen for more.
+
+        Parameters
+        ----------
+        node : rclpy.node.Node
+        parameters : Parameters
+        on_description : callable(source, origin)
+            Source is the URDF text or path; origin says in words where it comes from.
+        on_internal_error : callable(str)
+
+        """
+        self.logger = node.get_logger()
+        self.on_internal_error = on_internal_error
+        self._on_description = on_description
+        self._last = None
+        self.topic = None
+        if parameters['robot_description']:
+            # Bytes are always text, so that a text is never taken for a path.
+            on_description(parameters['robot_description'].encode(),
+                           'parameter robot_description')
+        elif parameters['robot_description_file']:
+            path = parameters['robot_description_file']
+            on_description(path, f'parameter robot_description_file ({path})')
+        else:
+            subscription = node.create_subscription(String, 'robot_description', self._received,
+                                                    ROBOT_DESCRIPTION)
+            self.topic = subscription.topic_name
+
+    @guarded
+    def _received(self, message):
+        if message.data == self._last:
+            return
+        if self._on_description(message.data.encode(errors='surrogatepass'),
+                                f'topic {self.topic}'):
+            self._last = message.data

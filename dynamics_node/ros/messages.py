@@ -1,0 +1,38 @@
+"""Between numpy and messages: the fast ways in and out."""
+
+from array import array
+
+import numpy as np
+
+
+def to_field(values):
+    """
+    Return an array as what a float64[] field takes fastest.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        Any shape; flattened row-major.
+
+    Returns
+    -------
+    array.array of 'd'
+
+    """
+    return array('d', np.ascontiguousarray(values, dtype=float).tobytes())
+
+
+def from_field(field):
+    """
+    Return a float64[] field as an array of its own.
+
+    Parameters
+    ----------
+    field : array.array or sequence of float
+
+    Returns
+    -------
+    numpy.ndarray, shape (len(field),)
+
+    """
+    return np.array(field, dtype=float)

@@ -1,0 +1,195 @@
+"""
+Every parameter of the node, in one table.
+
+Declaration, validation, config/dynamics.yaml and the README's table follow from it; tests hold
+them together. A parameter that is not in here does not exist.
+
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ..output.channel import STOP_BEHAVIORS
+
+MAX_GRAVITY = 20.0
+DOUBLE, DOUBLES, TEXT, TEXTS, FLAG = 'double', 'double[]', 'string', 'string[]', 'bool'
+
+
+class ParameterError(ValueError):
+    """A parameter value is refused; the message says what is expected and what came."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """
+    One parameter.
+
+    Attributes
+    ----------
+    name, kind : str
+        Kind is one of double, double[], string, string[], bool.
+    default : Any
+    description : str
+        With the unit; what an empty value means.
+    read_only : bool
+        Whether it can be set only at start-up.
+    low, high : float
+        Range of every number, both ends allowed; `low_open` leaves out the lower end.
+    choices : tuple of str
+        Allowed values of a text.
+    length : int or None
+        How many numbers an array must have; None for any.
+
+    """
+
+    name: str
+    kind: str
+    default: Any
+    description: str
+    read_only: bool = False
+    low: float = -math.inf
+    high: float = math.inf
+    low_open: bool = False
+    choices: tuple = ()
+    length: int | None = None
+
+    def check(self, value):
+        """
+        Return a value in the kind of this parameter.
+
+        Parameters
+        ----------
+        value : Any
+            What ROS delivers: bool, int, float, str or a sequence of one of them.
+
+        Returns
+        -------
+        bool, float, str or tuple
+            Integers are taken for doubles, as people write them.
+
+        Raises
+        ------
+        ParameterError
+            If the type or the value is wrong.
+
+        """
+        convert = {DOUBLE: self._number, DOUBLES: self._numbers, TEXT: self._text,
+                   TEXTS: self._texts, FLAG: self._flag}
+        return convert[self.kind](value)
+
+    def _number(self, value):
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise self._error('a number', value)
+        in_range = self.low < value if self.low_open else self.low <= value
+        if not (math.isfinite(value) and in_range and value <= self.high):
+            raise self._error(self._range(), value)
+        return float(value)
+
+    def _range(self):
+        if math.isinf(self.low) and math.isinf(self.high):
+            return 'a finite number'
+        low = f'{">" if self.low_open else ">="} {self.low:g}'
+        return (f'a finite number {low}' if math.isinf(self.high)
+                else f'a number {low} and <= {self.high:g}')
+
+    def _numbers(self, value):
+        if isinstance(value, (str, bytes)) or not hasattr(value, '__len__'):
+            raise self._error('a list of numbers', value)
+        if self.length is not None and len(value) != self.length:
+            raise self._error(f'{self.length} numbers', value)
+        return tuple(self._number(item) for item in value)
+
+    def _text(self, value):
+        if not isinstance(value, str):
+            raise self._error('a text', value)
+        if self.choices and value not in self.choices:
+            raise self._error('one of ' + ', '.join(self.choices), value)
+        return value
+
+    def _texts(self, value):
+        if isinstance(value, (str, bytes)) or not hasattr(value, '__len__'):
+            raise self._error('a list of texts', value)
+        if not all(isinstance(item, str) and item for item in value):
+            raise self._error('a list of texts that are not empty', value)
+        return tuple(value)
+
+    def _flag(self, value):
+        if not isinstance(value, bool):
+            raise self._error('true or false', value)
+        return value
+
+    def _error(self, expected, value):
+        text = repr(list(value)) if isinstance(value, (tuple, list)) else repr(value)
+        return ParameterError(f'{self.name}: expected {expected}, got {text[:80]}')
+
+
+PARAMETERS = (
+    Parameter('joints', TEXTS, (), 'Joint names: rows of every answer and order of the '
+              'command. Empty: all movable joints in the order of the URDF', read_only=True),
+    Parameter('robot_description', TEXT, '', 'URDF text. Empty: the file, or the topic '
+              'robot_description', read_only=True),
+    Parameter('robot_description_file', TEXT, '', 'Path of a URDF. Empty: the topic '
+              'robot_description', read_only=True),
+    Parameter('gravity', DOUBLES, (0.0, 0.0, -9.81), 'Gravity acceleration in the root link\'s '
+              'frame, m/s², points down', length=3, low=-MAX_GRAVITY, high=MAX_GRAVITY),
+    Parameter('command_topic', TEXT, 'forward_effort_controller/commands', 'Where the efforts '
+              'go while output is enabled', read_only=True),
+    Parameter('enable_on_start', FLAG, False, 'Enable the output as soon as it is possible. '
+              'Many arms compensate gravity below the effort interface: leave it off there',
+              read_only=True),
+    Parameter('publish_dynamics', FLAG, True, 'Publish ~/dynamics while somebody listens'),
+    Parameter('state_timeout', DOUBLE, 0.1, 'Largest age of a joint state, s, on the steady '
+              'clock', low=0.0, low_open=True, high=10.0),
+    Parameter('allow_several_state_publishers', FLAG, False, 'Enable although joint_states has '
+              'several publishers: where arm and gripper have a broadcaster each'),
+    Parameter('start_ramp', DOUBLE, 0.5, 'Time from zero to the full effort, s', low=0.0,
+              high=60.0),
+    Parameter('stop_ramp', DOUBLE, 1.0, 'Time from the last effort to zero, s', low=0.0,
+              high=60.0),
+    Parameter('stop_behavior', TEXT, 'ramp_to_zero', 'How the output stops: ramp_to_zero, zero '
+              '(as fast as the rate limits allow) or hold (the last effort stays)',
+              choices=STOP_BEHAVIORS),
+    Parameter('effort_limits', DOUBLES, (), 'Largest effort per joint, N m or N, in the order '
+              'of joints. Empty: the URDF\'s; a joint without a limit refuses to be enabled',
+              low=0.0, low_open=True),
+    Parameter('effort_rate_limits', DOUBLES, (), 'Largest change of effort per joint, N m/s or '
+              'N/s. Empty: the effort limit per 0.1 s', low=0.0, low_open=True),
+    Parameter('effort_scale', DOUBLES, (), 'Gain on the model effort per joint. Empty: 1',
+              low=0.0, high=10.0),
+)
+
+
+def check_all(values):
+    """
+    Check values of parameters, and what holds between them.
+
+    Parameters
+    ----------
+    values : dict of str to Any
+        Name → value as ROS delivers it; names that are missing keep their defaults.
+
+    Returns
+    -------
+    dict of str to Any
+        All parameters, each in its kind.
+
+    Raises
+    ------
+    ParameterError
+        With every problem, one sentence each.
+
+    """
+    checked, problems = {}, []
+    for parameter in PARAMETERS:
+        try:
+            checked[parameter.name] = parameter.check(
+                values.get(parameter.name, parameter.default))
+        except ParameterError as error:
+            problems.append(str(error))
+    size = math.sqrt(sum(item * item for item in checked.get('gravity', ())))
+    if size > MAX_GRAVITY:
+        problems.append(f'gravity: expected at most {MAX_GRAVITY:g} m/s^2, got {size:.6g}')
+    if problems:
+        raise ParameterError('; '.join(problems))
+    return checked

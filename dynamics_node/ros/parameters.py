@@ -1,0 +1,95 @@
+"""Parameters of the node: declared from the table, checked before they are taken."""
+
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from rclpy.parameter import Parameter as RosParameter
+
+from .parameter_table import DOUBLE, DOUBLES, FLAG, PARAMETERS, TEXT, TEXTS, ParameterError
+from .parameter_table import check_all
+
+_TYPES = {
+    DOUBLE: RosParameter.Type.DOUBLE, DOUBLES: RosParameter.Type.DOUBLE_ARRAY,
+    TEXT: RosParameter.Type.STRING, TEXTS: RosParameter.Type.STRING_ARRAY,
+    FLAG: RosParameter.Type.BOOL,
+}
+
+
+class Parameters:
+    """
+    The node's parameter values: always complete, always checked.
+
+    Attributes
+    ----------
+    values : dict of str to Any
+        In force now; replaced as a whole, never changed in place.
+
+    """
+
+    def __init__(self, node, on_change, further_check=None):
+        """
+        Declare all parameters.
+
+        Parameters
+        ----------
+        node : rclpy.node.Node
+        on_change : callable(dict)
+            Called with all values after some were set at run time.
+        further_check : callable(dict), optional
+            Raises ParameterError for values that do not fit the robot.
+
+        Raises
+        ------
+        ParameterError
+            If an override from the command line or a file is refused.
+
+        """
+        self._node = node
+        self._on_change = on_change
+        self._further_check = further_check or (lambda values: None)
+        self.values = check_all({name: value for name, value in self._declare().items()
+                                 if value is not None})
+        node.add_on_set_parameters_callback(self._check)
+        node.add_post_set_parameters_callback(self._take)
+
+    def __getitem__(self, name):
+        """Return the value in force."""
+        return self.values[name]
+
+    def _declare(self):
+        given = {}
+        for parameter in PARAMETERS:
+            name = parameter.name
+            # Dynamic typing, because rcl refuses [87, 12] for a double array by an exception;
+            # the table's own check takes integers and says what is wrong with the rest.
+            descriptor = ParameterDescriptor(description=parameter.description,
+                                             dynamic_typing=True)
+            given[name] = self._node.declare_parameter(name, None, descriptor).value
+            if given[name] is None:
+                # Set after declaring: only so an empty list keeps the type of its elements.
+                self._node.set_parameters([_ros_parameter(parameter, parameter.default)])
+            descriptor.read_only = parameter.read_only
+            self._node.set_descriptor(name, descriptor)
+        return given
+
+    def _check(self, ros_parameters):
+        try:
+            self._merged(ros_parameters)
+        except ParameterError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _take(self, ros_parameters):
+        self.values = self._merged(ros_parameters)
+        self._on_change(self.values)
+
+    def _merged(self, ros_parameters):
+        values = dict(self.values)
+        values.update((item.name, item.value) for item in ros_parameters
+                      if item.name in values)
+        checked = check_all(values)
+        self._further_check(checked)
+        return checked
+
+
+def _ros_parameter(parameter, value):
+    value = list(value) if isinstance(value, tuple) else value
+    return RosParameter(parameter.name, _TYPES[parameter.kind], value)

@@ -1,0 +1,114 @@
+"""The robot in force: model, chosen joints and measured state, replaced as one."""
+
+import numpy as np
+
+from ..dynamics import JointSelection
+from ..errors import DynamicsError
+from ..output import JointStateBuffer
+
+
+class StateUnavailableError(DynamicsError):
+    """The newest measured state was asked for, and there is none that is fresh."""
+
+
+class Robot:
+    """
+    One robot as the node uses it.
+
+    Attributes
+    ----------
+    model : RobotModel
+        Under the gravity in force; replaced when gravity changes.
+    selection : JointSelection
+        The parameter `joints`.
+    buffer : JointStateBuffer
+        Measured states of all joints of the model.
+
+    """
+
+    def __init__(self, model, joints):
+        """
+        Begin with a model and nothing measured.
+
+        Parameters
+        ----------
+        model : RobotModel
+        joints : sequence of str
+            The parameter `joints`; empty for all.
+
+        Raises
+        ------
+        ArgumentError
+            If a joint is unknown, fixed, a mimic joint or named twice.
+
+        """
+        self.model = model
+        self.selection = JointSelection(model, joints)
+        self.buffer = JointStateBuffer(model.joint_names, self.selection.names,
+                                       model.neutral_position)
+
+    @property
+    def joint_names(self):
+        """The chosen joints, in the order of answers and commands."""
+        return self.selection.names
+
+    def gravity_torque(self):
+        """Return G of the chosen joints at the newest state, shape (m,), N m or N."""
+        return self.model.gravity_torque(self.buffer.position)[self.selection.index]
+
+    def measured_position(self, now, timeout):
+        """
+        Return the newest measured positions of all joints.
+
+        Parameters
+        ----------
+        now : float
+            Steady clock, s.
+        timeout : float
+            Age that is still fresh, s.
+
+        Returns
+        -------
+        numpy.ndarray, shape (n,)
+            rad or m.
+
+        Raises
+        ------
+        StateUnavailableError
+            If a chosen joint is not fresh; says which and what to do.
+
+        """
+        stale = self.buffer.stale_joints(now, timeout)
+        if stale:
+            raise StateUnavailableError(
+                f'no joint state within {timeout:g} s for {", ".join(stale)}: publish '
+                'joint_states, or give positions in the request')
+        return self.buffer.position
+
+    def effort_limits(self, given):
+        """
+        Return the effort limits of the chosen joints.
+
+        Parameters
+        ----------
+        given : sequence of float
+            The parameter `effort_limits`; empty for the URDF's.
+
+        Returns
+        -------
+        numpy.ndarray, shape (m,)
+            N m or N; NaN where neither states one.
+
+        """
+        return np.array(given) if given else self.model.effort_limits[self.selection.index]
+
+    def unlimited_joints(self, given):
+        """Return the names of the chosen joints that have no effort limit, a list of str."""
+        return [name for name, limit in zip(self.joint_names, self.effort_limits(given),
+                                            strict=True) if np.isnan(limit)]
+
+    def is_mass_matrix_positive_definite(self):
+        """Tell whether D of the chosen joints is positive definite at the newest state."""
+        index = self.selection.index
+        D = self.model.mass_matrix(self.buffer.position)[np.ix_(index, index)]
+        return bool(np.linalg.eigvalsh(D)[0] > 0.0)
