@@ -1,0 +1,161 @@
+"""The simulated robot as a process: what ROS sees of it, over real DDS."""
+
+import math
+
+import numpy as np
+import pytest
+
+from dynamics_node.ros.demo.mujoco_arm import MujocoArm
+
+DRIVEN = ['shoulder_yaw', 'shoulder_pitch', 'upper_arm_roll', 'elbow_pitch', 'forearm_roll',
+          'wrist_pitch', 'wrist_roll', 'left_finger_slide']
+NO_BODY = """<robot name="ghost"><link name="a"/><link name="b"/>
+<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>"""
+
+
+def holding_command(robot, arm7_text):
+    """Return MuJoCo's gravity torque where the robot stands, in the order of a command."""
+    here = robot.positions()
+    return MujocoArm(arm7_text).gravity_torque(np.array([here[name] for name in DRIVEN])).tolist()
+
+
+def largest_way(before, after):
+    """Return the largest displacement of a joint that turns [deg]."""
+    return max(math.degrees(abs(after[name] - before[name])) for name in DRIVEN[:-1])
+
+
+def test_it_publishes_the_original_description(robot, arm7_text):
+    """Latched, so that the node may come later."""
+    robot.wait_for(lambda: robot.description)
+    assert robot.description == arm7_text
+
+
+def test_joint_states_are_alphabetical_and_complete(robot):
+    """As joint_state_broadcaster does it: not in the order of the URDF, mimic joints included."""
+    state = robot.states[-1]
+    assert list(state.name) == sorted([*DRIVEN, 'right_finger_slide'])
+    assert len(state.position) == len(state.velocity) == len(state.effort) == 9
+
+
+def test_joint_states_come_at_about_the_rate(robot):
+    """500 Hz on a machine that has time for it."""
+    states = robot.spin_for(1.0)
+    assert 350 < len(states) < 520
+    stamps = [(state.header.stamp.sec, state.header.stamp.nanosec) for state in states]
+    assert stamps == sorted(set(stamps))
+
+
+def test_the_brakes_hold_at_start_up(robot):
+    """Not a bit moves without a command."""
+    positions = {tuple(state.position) for state in robot.spin_for(0.3)}
+    assert len(positions) == 1
+
+
+def test_released_without_a_command_it_falls(robot):
+    """Far, and downwards."""
+    before = robot.positions()
+    assert robot.call('set_brakes', data=False).success
+    robot.spin_for(0.6)
+    assert largest_way(before, robot.positions()) > 20.0
+    assert robot.position('shoulder_pitch') > before['shoulder_pitch']
+
+
+def test_one_command_is_held_for_ever(robot, arm7_text):
+    """A single message with the gravity torque keeps the arm still."""
+    before, torque = robot.positions(), holding_command(robot, arm7_text)
+    robot.command(torque)
+    robot.wait_for(lambda: robot.efforts()['shoulder_pitch'] != 0.0)
+    robot.call('set_brakes', data=False)
+    robot.spin_for(0.7)
+    assert largest_way(before, robot.positions()) < 0.01
+    assert robot.efforts() == pytest.approx({**dict(zip(DRIVEN, torque)),
+                                             'right_finger_slide': 0.0})
+
+
+@pytest.mark.parametrize('wrong', [[], [1.0] * 7, [1.0] * 9, [math.nan] * 8])
+def test_a_wrong_command_is_ignored(robot, wrong):
+    """Too short, too long, empty or not a number: the last good one stays."""
+    good = [0.1 * i for i in range(8)]
+    robot.command(good)
+    robot.wait_for(lambda: robot.efforts()['left_finger_slide'] == good[-1])
+    robot.command(wrong)
+    assert {tuple(state.effort) for state in robot.spin_for(0.1)} == {
+        tuple(robot.states[-1].effort)}
+    assert robot.efforts()['left_finger_slide'] == good[-1]
+
+
+def test_nothing_is_clamped(robot):
+    """The node has to clamp, as with Jazzy's ros2_control."""
+    robot.command([1e4] * 8)
+    robot.wait_for(lambda: robot.efforts()['wrist_roll'] == 1e4)
+
+
+def test_a_push_moves_the_held_arm(robot, arm7_text):
+    """And it says with what."""
+    before = robot.positions()
+    robot.command(holding_command(robot, arm7_text))
+    robot.wait_for(lambda: robot.efforts()['shoulder_pitch'] != 0.0)
+    robot.call('set_brakes', data=False)
+    answer = robot.call('push')
+    assert answer.success and ' N for 0.25 s' in answer.message
+    robot.spin_for(0.5)
+    assert largest_way(before, robot.positions()) > 5.0
+
+
+def test_a_push_on_the_brakes_is_refused(robot):
+    """It would do nothing, and that deserves an answer."""
+    answer = robot.call('push')
+    assert not answer.success and 'brakes are engaged' in answer.message
+
+
+def test_reset_travels_back_without_a_jump(robot):
+    """A robot cannot jump, and a watchdog on joint states would notice one."""
+    start = robot.positions()
+    robot.command([5.0] * 8)
+    robot.call('set_brakes', data=False)
+    robot.spin_for(0.4)
+    first = len(robot.states)
+    assert robot.call('reset').success
+    assert not robot.call('set_brakes', data=False).success  # it is on its way
+    robot.wait_for(lambda: robot.positions() == pytest.approx(start, abs=1e-9))
+    steps = np.abs(np.diff([state.position for state in robot.states[first:]], axis=0))
+    assert steps.max() < 2.6 * 0.05  # the fastest joint's speed limit, for the longest gap
+    assert not any(robot.efforts().values())
+
+
+def test_ctrl_c_ends_it_quietly(start_robot):
+    """Exit code 0 and nothing but its own log lines; `joints` and `start_pose` in one go."""
+    order = list(reversed(DRIVEN))
+    pose = [0.1, 0.5, 0.0, 0.3, 0.0, 0.2, 0.0, 0.01]
+    robot = start_robot(f'joints:=[{", ".join(order)}]', f'start_pose:={pose}')
+    assert [robot.position(name) for name in DRIVEN] == pytest.approx(pose)
+    robot.command([float(i) for i in range(8)])
+    robot.wait_for(lambda: robot.efforts()['shoulder_yaw'] == 7.0)
+    assert robot.efforts()['wrist_roll'] == 1.0
+    code, output = robot.close()
+    assert code == 0
+    assert all(line.startswith('[INFO]') for line in output.splitlines()), output
+
+
+def test_a_robot_without_bodies_is_refused_in_one_sentence(refusal, tmp_path):
+    """MuJoCo cannot move what has no mass."""
+    path = tmp_path / 'ghost.urdf'
+    path.write_text(NO_BODY)
+    code, lines = refusal(f'robot_description_file:={path}')
+    assert code == 1
+    assert len(lines) == 1 and 'MuJoCo cannot simulate this robot' in lines[0], lines
+
+
+def test_the_viewer_without_a_display_is_refused_in_one_sentence(refusal):
+    """Not with a crash of GLFW."""
+    code, lines = refusal(arguments=['--view'])
+    assert code == 1
+    assert len(lines) == 1 and 'the viewer needs a display' in lines[0], lines
+
+
+def test_a_wrong_start_pose_is_refused_in_one_sentence(refusal):
+    """With the names of the joints in their order."""
+    code, lines = refusal('start_pose:=[1.0]')
+    assert code == 1
+    assert len(lines) == 1, lines
+    assert 'start_pose: expected 8 finite numbers for shoulder_yaw' in lines[0]
