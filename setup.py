@@ -17,10 +17,10 @@ setup(
         (f'share/{package_name}/config', glob('config/*.yaml')),
         (f'share/{package_name}/config/robots', glob('config/robots/*.urdf')),
     ],
-    install_requires=['setuptools', 'numpy', 'numba', 'scipy', 'yourdfpy'],
+    install_requires=['setuptools', 'numpy', 'numba', 'yourdfpy'],
     extras_require={
         'demo': ['mujoco', 'matplotlib', 'rich'],
-        'test': ['pytest', 'hypothesis', 'pin', 'mujoco', 'example-robot-data'],
+        'test': ['pytest', 'hypothesis', 'scipy', 'pin', 'mujoco', 'example-robot-data'],
     },
     python_requires='>=3.10',
     zip_safe=True,

@@ -8,6 +8,7 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
+from ..dynamics import RobotModel
 from ..errors import DynamicsError
 from ..kernels.warm_up import warm_up
 from .node import DynamicsNode
@@ -39,7 +40,7 @@ def main(args=None):
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     signals = _Signals()
     try:
-        warm_up()
+        _load_what_is_slow()
         node = DynamicsNode()
         _spin(node, signals)
         return 0
@@ -48,6 +49,12 @@ def main(args=None):
         return 1
     finally:
         rclpy.try_shutdown()
+
+
+def _load_what_is_slow():
+    # The compiled kernels and the URDF parser, before the first callback could wait for them.
+    warm_up()
+    RobotModel.from_urdf('<robot name="warm_up"><link name="base"/></robot>')
 
 
 class _Signals:

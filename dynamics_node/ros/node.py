@@ -52,7 +52,7 @@ class DynamicsNode(Node):
         self.logger = self.get_logger()
         self._robot = None
         self._start = time.monotonic()
-        self.parameters = Parameters(self, self._reconfigured, self._check_against_robot)
+        self.parameters = Parameters(self)
         self._gravity_publisher = self.create_publisher(JointState, '~/gravity_torque', RESULT)
         self._dynamics_publisher = self.create_publisher(JointDynamics, '~/dynamics', RESULT)
         subscription = self.create_subscription(
@@ -68,6 +68,7 @@ class DynamicsNode(Node):
         self._wants_enable = self.parameters['enable_on_start']
         self.source = DescriptionSource(self, self.parameters, self._described,
                                         self.on_internal_error)
+        self.parameters.watch(self._reconfigured, self._check_against_robot)
         self.create_timer(1.0, self._every_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def on_internal_error(self, message):

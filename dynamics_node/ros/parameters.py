@@ -24,17 +24,13 @@ class Parameters:
 
     """
 
-    def __init__(self, node, on_change, further_check=None):
+    def __init__(self, node):
         """
         Declare all parameters.
 
         Parameters
         ----------
         node : rclpy.node.Node
-        on_change : callable(dict)
-            Called with all values after some were set at run time.
-        further_check : callable(dict), optional
-            Raises ParameterError for values that do not fit the robot.
 
         Raises
         ------
@@ -43,12 +39,25 @@ class Parameters:
 
         """
         self._node = node
-        self._on_change = on_change
-        self._further_check = further_check or (lambda values: None)
+        self._on_change = self._further_check = None
         self.values = check_all({name: value for name, value in self._declare().items()
                                  if value is not None})
-        node.add_on_set_parameters_callback(self._check)
-        node.add_post_set_parameters_callback(self._take)
+
+    def watch(self, on_change, further_check):
+        """
+        Accept changes at run time from now on.
+
+        Parameters
+        ----------
+        on_change : callable(dict)
+            Called with all values after some were set.
+        further_check : callable(dict)
+            Raises ParameterError for values that do not fit the robot.
+
+        """
+        self._on_change, self._further_check = on_change, further_check
+        self._node.add_on_set_parameters_callback(self._check)
+        self._node.add_post_set_parameters_callback(self._take)
 
     def __getitem__(self, name):
         """Return the value in force."""
@@ -58,16 +67,12 @@ class Parameters:
         given = {}
         for parameter in PARAMETERS:
             name = parameter.name
-            # Dynamic typing, because rcl refuses [87, 12] for a double array by an exception;
-            # the table's own check takes integers and says what is wrong with the rest.
-            descriptor = ParameterDescriptor(description=parameter.description,
-                                             dynamic_typing=True)
-            given[name] = self._node.declare_parameter(name, None, descriptor).value
+            given[name] = self._node.declare_parameter(name, None, _descriptor(parameter)).value
             if given[name] is None:
                 # Set after declaring: only so an empty list keeps the type of its elements.
                 self._node.set_parameters([_ros_parameter(parameter, parameter.default)])
-            descriptor.read_only = parameter.read_only
-            self._node.set_descriptor(name, descriptor)
+            # A read-only parameter could not have been set above.
+            self._node.set_descriptor(name, _descriptor(parameter, parameter.read_only))
         return given
 
     def _check(self, ros_parameters):
@@ -78,6 +83,8 @@ class Parameters:
         return SetParametersResult(successful=True)
 
     def _take(self, ros_parameters):
+        if not any(item.name in self.values for item in ros_parameters):
+            return
         self.values = self._merged(ros_parameters)
         self._on_change(self.values)
 
@@ -88,6 +95,13 @@ class Parameters:
         checked = check_all(values)
         self._further_check(checked)
         return checked
+
+
+def _descriptor(parameter, read_only=False):
+    # Dynamic typing, because rcl refuses [87, 12] for a double array by an exception; the
+    # table's own check takes integers and says what is wrong with the rest.
+    return ParameterDescriptor(description=parameter.description, read_only=read_only,
+                               dynamic_typing=True)
 
 
 def _ros_parameter(parameter, value):

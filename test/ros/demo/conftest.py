@@ -34,22 +34,21 @@ def environment():
             'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 
 
-def run_robot(*parameters, env, arguments=()):
-    """Start the simulated robot with parameters `name:=value`; return the process."""
-    flags = [word for parameter in parameters for word in ('-p', parameter)]
+def run_robot(env, arguments):
+    """Start the simulated robot with a command line; return the process."""
     return subprocess.Popen(
-        [sys.executable, '-m', 'dynamics_node.ros.demo.simulated_robot', *arguments,
-         '--ros-args', *flags], env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        text=True)
+        [sys.executable, '-m', 'dynamics_node.ros.demo.simulated_robot', *arguments], env=env,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
 class Robot:
     """A running simulated robot and what ROS sees of it."""
 
     def __init__(self, *parameters):
-        """Start the process and wait until everything is connected."""
+        """Start the process with parameters `name:=value` and wait until all is connected."""
         env = environment()
-        self.process = run_robot(*parameters, env=env)
+        flags = [word for parameter in parameters for word in ('-p', parameter)]
+        self.process = run_robot(env, ['--ros-args', *flags] if flags else [])
         self.context = Context()
         os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = env['ROS_AUTOMATIC_DISCOVERY_RANGE']
         rclpy.init(context=self.context, domain_id=int(env['ROS_DOMAIN_ID']))
@@ -172,19 +171,30 @@ def start_robot():
 
 
 @pytest.fixture
-def refusal():
-    """Return a function that starts a robot which must not start: exit code and its lines."""
-    def run(*parameters, arguments=()):
-        env = environment()
-        for name in ('DISPLAY', 'WAYLAND_DISPLAY'):
-            env.pop(name, None)
-        process = run_robot(*parameters, env=env, arguments=arguments)
-        try:
-            output, _ = process.communicate(timeout=PATIENCE)
-        finally:
-            process.kill()
-        return process.returncode, [x for x in output.splitlines() if not x.startswith('[')]
+def refusals():
+    """Return a function: command lines of robots that must not start, to the line each prints."""
+    def run(*command_lines):
+        env = {name: value for name, value in environment().items()
+               if name not in ('DISPLAY', 'WAYLAND_DISPLAY')}
+        return [only_line(process) for process in [run_robot(env, line) for line in command_lines]]
     return run
+
+
+def only_line(process):
+    """Return the one line, beside log lines, of a process that ends with exit code 1."""
+    try:
+        output, _ = process.communicate(timeout=PATIENCE)
+    finally:
+        process.kill()
+    lines = [line for line in output.splitlines() if not line.startswith('[')]
+    assert process.returncode == 1 and len(lines) == 1, output
+    return lines[0]
+
+
+@pytest.fixture
+def child_environment():
+    """Return the environment for a child process: a domain of its own, this very package."""
+    return environment()
 
 
 @pytest.fixture(scope='session')

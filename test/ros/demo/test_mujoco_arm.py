@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio
 import pytest
 
-from dynamics_node.ros.demo.mujoco_arm import MujocoArm
+from dynamics_node.ros.demo.mujoco_arm import MujocoArm, UnstableError
 from dynamics_node.ros.demo.mujoco_model import TIME_STEP
 from dynamics_node.ros.demo.poses import random_poses, start_pose
 from dynamics_node.ros.demo.robot_text import RobotRefused
@@ -139,6 +139,18 @@ def test_efforts_beyond_the_limits_are_not_clamped(arm):
     arm.step()
     stated = arm.driven[6].effort * TIME_STEP / arm.mass_matrix(arm.driven_position)[6, 6]
     assert abs(arm.velocity[6]) > 10 * stated
+
+
+def test_absurd_efforts_end_on_the_brakes(arm, tmp_path, monkeypatch):
+    """Where the arm was, and without MuJoCo's log file in the current directory."""
+    monkeypatch.chdir(tmp_path)
+    before = arm.position.copy()
+    arm.set_brakes(False)
+    arm.set_effort(np.full(8, 1e9))
+    with pytest.raises(UnstableError, match='brakes are engaged'):
+        arm.step(10)
+    assert arm.braked and np.array_equal(arm.position, before) and not arm.effort.any()
+    assert not list(tmp_path.iterdir())
 
 
 def test_mujoco_s_refusal_becomes_one_sentence():

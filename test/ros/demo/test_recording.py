@@ -43,7 +43,7 @@ def test_displacement_is_the_largest_on_the_way_not_the_last(recording):
 
 def outcome(recording, fall=60.0, drift=0.1, pushed=20.0, after=0.1):
     """Return an outcome with these degrees."""
-    return Outcome(recording, *(np.array([x, 0.0]) for x in (fall, drift, pushed, after)))
+    return Outcome(recording, 10.0, *(np.array([x, 0.0]) for x in (fall, drift, pushed, after)))
 
 
 def test_a_good_run_has_no_failures(recording):

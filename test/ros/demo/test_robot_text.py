@@ -21,25 +21,28 @@ def joint(name, kind='revolute', inner=''):
 
 def test_joints_come_in_the_order_of_the_document():
     """Fixed ones are left out."""
-    text = robot(joint('z'), joint('f', 'fixed'), joint('a', 'continuous'), joint('m', 'prismatic'))
+    text = robot(joint('z'), joint('f', 'fixed'), joint('a', 'continuous'),
+                 joint('m', 'prismatic'))
     assert [j.name for j in movable_joints(text)] == ['z', 'a', 'm']
     assert [j.turns for j in movable_joints(text)] == [True, True, False]
 
 
 def test_limits_and_damping_are_read():
-    """Nothing stated means infinite or zero."""
-    stated, bare, endless = movable_joints(robot(
+    """Nothing stated means infinite or zero; a range of nothing is none."""
+    stated, bare, endless, empty = movable_joints(robot(
         joint('a', inner='<limit lower="-1" upper="2" effort="3" velocity="4"/>'
                          '<dynamics damping="5"/>'),
-        joint('b'), joint('c', 'continuous', '<limit lower="-1" upper="1" effort="7"/>')))
+        joint('b'), joint('c', 'continuous', '<limit lower="-1" upper="1" effort="7"/>'),
+        joint('d', inner='<limit effort="1" velocity="1"/>')))
     assert (stated.lower, stated.upper, stated.effort, stated.velocity, stated.damping) == (
         -1, 2, 3, 4, 5)
     assert (bare.lower, bare.upper, bare.effort) == (-math.inf, math.inf, 0)
+    assert (empty.lower, empty.upper, empty.effort) == (-math.inf, math.inf, 1)
     assert (endless.lower, endless.upper, endless.effort) == (-math.inf, math.inf, 7)
 
 
 def test_a_chain_of_mimic_joints_ends_at_the_driven_one():
-    """c = 2 b + 1 and b = 3 a + 4, so c = 6 a + 9."""
+    """Here c = 2 b + 1 and b = 3 a + 4, so c = 6 a + 9."""
     matrix, offset = mimic_map(movable_joints(robot(
         joint('c', inner='<mimic joint="b" multiplier="2" offset="1"/>'),
         joint('b', inner='<mimic joint="a" multiplier="3" offset="4"/>'), joint('a'))))

@@ -39,8 +39,8 @@ def test_joint_states_are_alphabetical_and_complete(robot):
 
 def test_joint_states_come_at_about_the_rate(robot):
     """500 Hz on a machine that has time for it."""
-    states = robot.spin_for(1.0)
-    assert 350 < len(states) < 520
+    states = robot.spin_for(0.6)
+    assert 200 < len(states) < 315
     stamps = [(state.header.stamp.sec, state.header.stamp.nanosec) for state in states]
     assert stamps == sorted(set(stamps))
 
@@ -113,7 +113,7 @@ def test_reset_travels_back_without_a_jump(robot):
     start = robot.positions()
     robot.command([5.0] * 8)
     robot.call('set_brakes', data=False)
-    robot.spin_for(0.4)
+    robot.spin_for(0.2)
     first = len(robot.states)
     assert robot.call('reset').success
     assert not robot.call('set_brakes', data=False).success  # it is on its way
@@ -137,25 +137,13 @@ def test_ctrl_c_ends_it_quietly(start_robot):
     assert all(line.startswith('[INFO]') for line in output.splitlines()), output
 
 
-def test_a_robot_without_bodies_is_refused_in_one_sentence(refusal, tmp_path):
-    """MuJoCo cannot move what has no mass."""
+def test_what_cannot_be_run_is_refused_in_one_sentence(refusals, tmp_path):
+    """A robot that MuJoCo cannot move, a viewer without a display, a wrong start pose."""
     path = tmp_path / 'ghost.urdf'
     path.write_text(NO_BODY)
-    code, lines = refusal(f'robot_description_file:={path}')
-    assert code == 1
-    assert len(lines) == 1 and 'MuJoCo cannot simulate this robot' in lines[0], lines
-
-
-def test_the_viewer_without_a_display_is_refused_in_one_sentence(refusal):
-    """Not with a crash of GLFW."""
-    code, lines = refusal(arguments=['--view'])
-    assert code == 1
-    assert len(lines) == 1 and 'the viewer needs a display' in lines[0], lines
-
-
-def test_a_wrong_start_pose_is_refused_in_one_sentence(refusal):
-    """With the names of the joints in their order."""
-    code, lines = refusal('start_pose:=[1.0]')
-    assert code == 1
-    assert len(lines) == 1, lines
-    assert 'start_pose: expected 8 finite numbers for shoulder_yaw' in lines[0]
+    ghost, blind, lost = refusals(
+        ['--ros-args', '-p', f'robot_description_file:={path}'], ['--view'],
+        ['--ros-args', '-p', 'start_pose:=[1.0]'])
+    assert ghost.startswith('simulated_robot: MuJoCo cannot simulate this robot: ')
+    assert blind.startswith('simulated_robot: the viewer needs a display')
+    assert lost.startswith('simulated_robot: start_pose: expected 8 finite numbers for shoulder_')

@@ -1,0 +1,184 @@
+"""The output as a whole, with a clock that the test turns."""
+
+import math
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from dynamics_node.output import OutputChannel
+from dynamics_node.output.channel import OutputSettings
+
+LIMITS, RATES = np.array([10.0, 5.0]), np.array([100.0, 50.0])
+TORQUE = np.array([4.0, -2.0])
+
+
+def channel(stop_behavior='ramp_to_zero', limits=LIMITS, **changes):
+    settings = {'state_timeout': 0.1, 'start_ramp': 0.5, 'stop_ramp': 1.0, **changes}
+    unit = OutputChannel(OutputSettings(stop_behavior=stop_behavior, **settings))
+    unit.set_limiter(limits, RATES, np.ones(2))
+    return unit
+
+
+def active(**options):
+    """Return a channel that is ACTIVE at t = 1 with the whole torque out."""
+    unit = channel(**options)
+    unit.enable(0.0)
+    for now in np.arange(0.0, 1.001, 0.01):
+        unit.on_effort(now, TORQUE)
+    assert unit.machine.name == 'ACTIVE'
+    np.testing.assert_array_equal(unit.limiter.last, TORQUE)
+    return unit
+
+
+def stopped(unit, now):
+    """Tick until nothing more comes; return the commands."""
+    commands = []
+    while (command := unit.tick(now, 0.0)) is not None:
+        commands.append(command)
+        now += 0.01
+        assert len(commands) < 500
+    return np.array(commands)
+
+
+def test_nothing_goes_out_while_off():
+    unit = channel()
+    assert unit.on_effort(0.0, TORQUE) is None
+    assert unit.tick(0.0, math.inf) is None
+    assert unit.machine.name == 'READY'
+
+
+def test_the_start_ramps_from_zero_to_the_torque():
+    unit = channel()
+    unit.enable(0.0)
+    np.testing.assert_array_equal(unit.on_effort(0.0, TORQUE), [0, 0])
+    np.testing.assert_allclose(unit.on_effort(0.25, TORQUE), TORQUE / 2)
+    np.testing.assert_allclose(unit.on_effort(0.5, TORQUE), TORQUE)
+    assert unit.machine.name == 'ACTIVE'
+
+
+def test_a_stop_ramps_to_zero_and_ends_with_zeros():
+    unit = active()
+    unit.stop(1.0, 'disabled on request')
+    assert unit.on_effort(1.0, TORQUE) is None
+    commands = stopped(unit, 1.0)
+    np.testing.assert_allclose(commands[50], TORQUE / 2, rtol=0.03)
+    np.testing.assert_array_equal(commands[-1], [0, 0])
+    assert unit.machine.name == 'READY'
+
+
+def test_zero_stops_as_fast_as_the_rate_limits_allow():
+    unit = active(stop_behavior='zero')
+    unit.stop(1.0, 'disabled on request')
+    commands = stopped(unit, 1.01)
+    np.testing.assert_allclose(commands[0], [3.0, -1.5])
+    np.testing.assert_array_equal(commands[-1], [0, 0])
+    assert len(commands) <= 6
+
+
+def test_hold_leaves_the_last_command_in_force():
+    unit = active(stop_behavior='hold')
+    unit.stop(1.0, 'disabled on request')
+    np.testing.assert_array_equal(stopped(unit, 1.0), [TORQUE])
+
+
+def test_a_stale_state_stops_and_latches_with_both_numbers():
+    unit = active()
+    assert unit.tick(1.05, 0.05) is None
+    unit.tick(1.134, 0.134)
+    assert unit.machine.name == 'STOPPING'
+    stopped(unit, 1.14)
+    assert (unit.machine.name, unit.machine.reason) == (
+        'FAULT', 'joint_states stale: last 0.134 s ago, limit 0.100 s')
+
+
+def test_an_effort_that_is_not_finite_stops_from_the_last_valid_one():
+    unit = active()
+    assert unit.on_effort(1.01, np.array([np.nan, 0.0])) is None
+    commands = stopped(unit, 1.01)
+    np.testing.assert_allclose(commands[0], TORQUE, rtol=0.02)
+    assert unit.machine.name == 'FAULT'
+    assert 'invalid effort' in unit.machine.reason
+
+
+def test_a_stop_is_bounded_when_the_process_has_to_end():
+    unit = active(stop_ramp=60.0)
+    unit.stop(1.0, 'SIGINT', within=2.5)
+    assert len(stopped(unit, 1.0)) <= 252
+    unit = active(stop_ramp=60.0)
+    unit.stop(1.0, 'disabled on request')
+    unit.tick(2.0, 0.0)
+    unit.stop(2.0, 'SIGINT', within=2.5)
+    assert len(stopped(unit, 2.0)) <= 252
+
+
+def test_a_stop_during_the_start_begins_from_what_was_reached():
+    unit = channel()
+    unit.enable(0.0)
+    unit.on_effort(0.0, TORQUE)
+    reached = unit.on_effort(0.1, TORQUE)
+    unit.stop(0.1, 'disabled on request')
+    assert (np.abs(stopped(unit, 0.1)) <= np.abs(reached) + 1e-12).all()
+
+
+def test_enabling_again_starts_from_zero():
+    unit = active()
+    unit.stop(1.0, 'disabled on request')
+    assert not unit.enable(1.1)
+    stopped(unit, 1.1)
+    assert unit.enable(5.0)
+    np.testing.assert_array_equal(unit.on_effort(5.0, TORQUE), [0, 0])
+
+
+def test_new_limits_while_active_do_not_jump():
+    unit = active()
+    unit.set_limiter(LIMITS / 5, RATES, np.ones(2))
+    command = unit.on_effort(1.01, TORQUE)
+    assert (np.abs(command) <= LIMITS / 5).all()
+    unit.set_limiter(LIMITS, RATES, np.ones(2))
+    np.testing.assert_allclose(unit.on_effort(1.02, TORQUE), [3.0, -1.5])
+
+
+def test_limits_that_are_no_numbers_cannot_keep_a_stop_from_ending():
+    unit = active()
+    unit.set_limiter(np.full(2, np.nan), np.full(2, np.nan), np.ones(2))
+    assert unit.on_effort(1.01, TORQUE) is None
+    commands = stopped(unit, 1.01)
+    np.testing.assert_array_equal(commands[-1], [0, 0])
+    assert unit.machine.name == 'FAULT'
+
+
+EVENTS = st.one_of(
+    st.just(('enable',)), st.just(('stop',)), st.just(('fault',)),
+    st.tuples(st.just('tick'), st.floats(0, 0.2)),
+    st.tuples(st.just('effort'), st.floats(allow_nan=True), st.floats(allow_nan=True)))
+
+
+@given(st.sampled_from(['ramp_to_zero', 'zero', 'hold']),
+       st.lists(st.tuples(st.floats(0, 0.5), EVENTS), max_size=60))
+def test_no_sequence_of_events_publishes_what_must_not_be_published(behavior, events):
+    unit = channel(stop_behavior=behavior)
+    now, last, last_time = 0.0, np.zeros(2), 0.0
+    for step, (event, *values) in events:
+        now += step
+        command = None
+        if event == 'enable':
+            if unit.enable(now):
+                last, last_time = np.zeros(2), now
+        elif event in ('stop', 'fault'):
+            unit.stop(now, event, is_fault=event == 'fault')
+        elif event == 'tick':
+            was_on = unit.machine.is_on
+            command = unit.tick(now, values[0])
+            assert command is None or was_on
+        else:
+            was_driving = unit.machine.is_driving
+            command = unit.on_effort(now, np.array(values))
+            assert command is None or was_driving
+        if command is not None:
+            assert command.shape == (2,)
+            assert np.isfinite(command).all()
+            assert (np.abs(command) <= LIMITS).all()
+            allowed = RATES * (now - last_time) * (1 + 1e-9) + 1e-12
+            assert (np.abs(command - last) <= allowed).all()
+            last, last_time = command, now

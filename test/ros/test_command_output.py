@@ -1,0 +1,227 @@
+"""The command topic over DDS: silent until asked, ramped, limited, and stopped in order."""
+
+import signal
+
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray, String
+from support.robots import ARM7, PENDULUM
+
+from dynamics_node import RobotModel
+
+TOPIC = 'forward_effort_controller/commands'
+HOLD = 0.5 * 3 * 0.7 * 9.81  # the pendulum's gravity torque at 0, N m
+
+
+def level(client):
+    """Return an action that publishes the pendulum at rest, level."""
+    return lambda: client.publish(['hinge'], [0.0], [0.0])
+
+
+def enabled(client, action):
+    """Enable the output and wait until it is ACTIVE."""
+    client.until(client.states.get_subscription_count, action)
+    client.during(0.3, action)
+    answer = client.enable(True, action)
+    assert answer.success, answer.message
+    client.until(client.output_is('ACTIVE'), action)
+    client.until(lambda: client.commands, action)
+    return answer
+
+
+def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(client, start):
+    start(robot_description_file=PENDULUM)
+    client.record_commands()
+    publish = level(client)
+    client.until(lambda: client.node.count_publishers(TOPIC), publish)
+    client.during(1.0, publish)
+    assert client.commands == []
+    enabled(client, publish)
+    client.during(0.2, publish)
+    efforts = np.array([effort for _, [effort] in client.commands])
+    assert efforts[0] < 0.2 * HOLD
+    assert (np.diff(efforts) >= 0).all()
+    assert efforts[-1] == pytest.approx(HOLD)
+
+    client.commands.clear()
+    assert client.enable(False, publish).success
+    client.until(client.output_is('READY'), publish)
+    client.during(0.3, publish)
+    efforts = np.array([effort for _, [effort] in client.commands])
+    assert (np.diff(efforts) <= 0).all()
+    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
+    assert efforts[-1] == 0.0
+    duration = client.commands[-1][0] - client.commands[0][0]
+    assert duration == pytest.approx(1.0, abs=0.4)
+    assert [output.name for output in client.outputs] == [
+        'READY', 'STARTING', 'ACTIVE', 'STOPPING', 'READY']
+    client.commands.clear()
+    client.during(0.5, publish)
+    assert client.commands == []
+
+
+def test_stale_states_stop_by_the_ramp_and_latch_a_fault(client, start):
+    start(robot_description_file=PENDULUM)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    client.commands.clear()
+    client.until(client.output_is('FAULT'))  # nobody publishes states any more
+    client.during(0.2)
+    efforts = np.array([effort for _, [effort] in client.commands])
+    assert efforts[-1] == 0.0
+    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
+    assert 'joint_states stale: last 0.1' in client.outputs[-1].reason
+    assert 'limit 0.100 s' in client.outputs[-1].reason
+    # States alone do not clear it; a request does.
+    client.during(0.3, publish)
+    assert client.outputs[-1].name == 'FAULT'
+    enabled(client, publish)
+
+
+def test_efforts_are_clamped_to_the_limit(client, start):
+    start(robot_description_file=PENDULUM, effort_limits='[4]')
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    client.during(0.3, publish)
+    assert max(effort for _, [effort] in client.commands) == 4.0
+
+
+def test_garbage_while_active_never_reaches_the_command(client, start):
+    start(robot_description_file=PENDULUM)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+
+    def with_garbage():
+        publish()
+        client.publish(['hinge'], [np.nan])
+        client.publish(['hinge'], [1.0, 2.0])
+        client.publish(['hinge', 'hinge'], [1.0, 2.0])
+    client.commands.clear()
+    client.during(0.5, with_garbage)
+    assert client.outputs[-1].name == 'ACTIVE'
+    assert len(client.commands) > 10
+    assert all(command == [pytest.approx(HOLD)] for _, command in client.commands)
+
+    # Garbage alone is silence: the watchdog stops.
+    client.until(client.output_is('FAULT'), lambda: client.publish(['hinge'], [np.nan]))
+    assert client.commands[-1][1] == [0.0]
+    assert np.isfinite([command for _, command in client.commands]).all()
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_while_active_ramps_down_and_exits_with_0(client, start, number):
+    process = start(robot_description_file=PENDULUM)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    client.commands.clear()
+    process.send(number)
+    client.until(lambda: process.process.poll() is not None, publish, timeout=6.0)
+    client.during(0.2)
+    efforts = np.array([effort for _, [effort] in client.commands])
+    assert efforts[-1] == 0.0
+    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
+    assert process.wait()[0] == 0
+
+
+def test_a_signal_while_idle_exits_with_0_at_once(client, start):
+    process = start()
+    client.until(lambda: client.node.count_publishers(TOPIC))
+    process.send(signal.SIGINT)
+    code, output = process.wait(5.0)
+    assert code == 0
+    assert 'Traceback' not in output
+
+
+def test_the_command_follows_the_order_of_joints_and_hold_keeps_the_last_effort(client, start):
+    arm = RobotModel.from_urdf(ARM7)
+    chosen = [arm.joint_names[i] for i in (3, 0, 1)]
+    start(robot_description_file=ARM7, joints=f'[{", ".join(chosen)}]', stop_behavior='hold')
+    client.record_commands()
+    q = np.clip(np.full(len(arm.joint_names), 0.5), *arm.position_limits.T)
+
+    def publish():
+        client.publish(arm.joint_names, q)
+    enabled(client, publish)
+    client.during(0.2, publish)
+    expected = arm.gravity_torque(q)[[3, 0, 1]]
+    np.testing.assert_allclose(client.commands[-1][1], expected, rtol=1e-12, atol=1e-12)
+    client.enable(False, publish)
+    client.until(client.output_is('READY'), publish)
+    client.during(0.2, publish)
+    np.testing.assert_allclose(client.commands[-1][1], expected, rtol=1e-12, atol=1e-12)
+
+
+def test_a_new_description_is_ignored_while_output_is_on(client, start):
+    process = start()
+    client.record_commands()
+    text = PENDULUM.read_text()
+    client.description.publish(String(data=text))
+    publish = level(client)
+    enabled(client, publish)
+    heavier = text.replace('<mass value="3"/>', '<mass value="6"/>')
+    client.description.publish(String(data=heavier))
+    client.during(0.5, publish)
+    assert client.commands[-1][1] == [pytest.approx(HOLD)]
+    client.enable(False, publish)
+    client.until(client.output_is('READY'), publish)
+    client.description.publish(String(data=heavier))
+    client.during(0.3, publish)
+    enabled(client, publish)
+    assert client.commands[-1][1] == [pytest.approx(2 * HOLD)]
+    process.send(signal.SIGINT)
+    client.until(lambda: process.process.poll() is not None, publish)
+    assert 'ignored: output is on' in process.wait()[1]
+
+
+def test_enabling_is_refused_with_every_reason(client, start):
+    text = PENDULUM.read_text().replace('<limit effort="20" velocity="20"/>', '')
+    start(robot_description=text.replace('\n', ' ').replace('"', "'"))
+    answer = client.enable(True)
+    assert not answer.success
+    assert 'no joint state within 0.1 s for hinge' in answer.message
+    assert 'no effort limit for hinge: set the parameter effort_limits' in answer.message
+
+
+def test_enabling_is_refused_while_others_publish(client, start):
+    start(robot_description_file=PENDULUM)
+    publish = level(client)
+    client.until(client.states.get_subscription_count, publish)
+    client.during(0.3, publish)
+    rival = client.node.create_publisher(Float64MultiArray, TOPIC, 1)
+    second = client.node.create_publisher(JointState, 'joint_states', 1)
+    client.until(second.get_subscription_count, publish)
+    client.during(0.5, publish)
+    answer = client.enable(True, publish)
+    assert not answer.success
+    assert f'1 other publisher(s) on /{TOPIC}' in answer.message
+    assert '2 publishers on /joint_states' in answer.message
+    client.node.destroy_publisher(rival)
+    client.node.destroy_publisher(second)
+    client.during(1.0, publish)
+    answer = client.enable(True, publish)
+    assert answer.success, answer.message
+    assert 'but nobody listens there' in answer.message
+
+
+def test_without_a_robot_enabling_is_refused_and_disabling_is_answered(client, start):
+    start()
+    assert 'no robot description yet' in client.enable(True).message
+    answer = client.enable(False)
+    assert answer.success
+    assert answer.message == 'already off: READY'
+
+
+def test_enabling_on_start_waits_until_nothing_speaks_against_it(client, start):
+    start(robot_description_file=PENDULUM, enable_on_start='true')
+    client.record_commands()
+    client.until(client.states.get_subscription_count)
+    client.until(client.output_is('READY'))
+    client.until(client.output_is('ACTIVE'), level(client))
+    answer = client.enable(True, level(client))
+    assert answer.success
+    assert 'already enabled' in answer.message

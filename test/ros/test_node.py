@@ -1,0 +1,212 @@
+"""The node over DDS: joint states in, gravity torque and dynamics out."""
+
+import numpy as np
+import pytest
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParametersAtomically
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+from support.robots import ARM7, PENDULUM
+
+from dynamics_interfaces.msg import JointDynamics
+from dynamics_node import RobotModel
+
+
+@pytest.fixture(scope='module')
+def arm():
+    return RobotModel.from_urdf(ARM7)
+
+
+def measured(names, q):
+    """Return names and positions backwards and with a joint that the robot does not have."""
+    return ['unknown', *reversed(names)], [9.9, *reversed(list(q))]
+
+
+def test_gravity_torque_is_by_name_whatever_the_order(client, start, arm):
+    start(robot_description_file=ARM7)
+    torques = client.listen(JointState, '/dynamics_node/gravity_torque')
+    q = np.clip(np.linspace(0.3, -0.9, 8), *arm.position_limits.T)
+    names, positions = measured(arm.joint_names, q)
+    client.until(lambda: torques, lambda: client.publish(names, positions))
+    assert tuple(torques[-1].name) == arm.joint_names
+    np.testing.assert_array_equal(torques[-1].position, q)
+    np.testing.assert_array_equal(torques[-1].effort, arm.gravity_torque(q))
+    stamp = torques[-1].header.stamp
+    assert stamp.sec > 0
+
+    def forward():
+        client.publish(arm.joint_names, q)
+    torques.clear()
+    client.until(lambda: len(torques) > 2, forward)
+    np.testing.assert_array_equal(torques[-1].effort, arm.gravity_torque(q))
+
+
+def test_partial_messages_are_merged_and_nothing_is_computed_before_all_joints_came(
+        client, start, arm):
+    start(robot_description_file=ARM7)
+    torques = client.listen(JointState, '/dynamics_node/gravity_torque')
+    q = np.clip(np.full(8, 0.2), *arm.position_limits.T)
+    client.until(lambda: client.states.get_subscription_count())
+    client.until(lambda: client.node.count_publishers('/dynamics_node/gravity_torque'))
+    client.during(0.5, lambda: client.publish(arm.joint_names[:5], q[:5]))
+    assert torques == []
+
+    def halves():
+        client.publish(arm.joint_names[:5], q[:5])
+        client.publish(arm.joint_names[5:], q[5:])
+    client.until(lambda: torques, halves)
+    np.testing.assert_array_equal(torques[-1].effort, arm.gravity_torque(q))
+
+
+def test_chosen_joints_come_in_the_chosen_order(client, start, arm):
+    chosen = (arm.joint_names[3], arm.joint_names[1])
+    start(robot_description_file=ARM7, joints=f'[{", ".join(chosen)}]')
+    torques = client.listen(JointState, '/dynamics_node/gravity_torque')
+    client.until(lambda: torques, lambda: client.publish(chosen, [-0.7, 0.5]))
+    assert tuple(torques[-1].name) == chosen
+    q = arm.neutral_position
+    q[[3, 1]] = -0.7, 0.5
+    np.testing.assert_array_equal(torques[-1].effort, arm.gravity_torque(q)[[3, 1]])
+
+
+def test_dynamics_are_published_and_coriolis_is_left_out_without_velocity(client, start, arm):
+    start(robot_description_file=ARM7)
+    received = client.listen(JointDynamics, '/dynamics_node/dynamics')
+    q = np.clip(np.linspace(-0.4, 0.9, 8), *arm.position_limits.T)
+    qd = np.linspace(1.0, -1.0, 8)
+    D, C, G = arm.dynamics(q, qd)
+    client.until(lambda: received, lambda: client.publish(arm.joint_names, q, qd))
+    message = received[-1]
+    assert tuple(message.joint_names) == arm.joint_names
+    assert message.header.frame_id == arm.tree.root
+    np.testing.assert_array_equal(np.reshape(message.mass_matrix, (8, 8)), D)
+    np.testing.assert_array_equal(np.reshape(message.coriolis_matrix, (8, 8)), C)
+    np.testing.assert_allclose(message.coriolis_torque, C @ qd, rtol=1e-13, atol=1e-15)
+    np.testing.assert_array_equal(message.gravity_torque, G)
+
+    for velocity in ((), [*qd[:7], np.nan]):
+        received.clear()
+        client.until(lambda: received and not len(received[-1].velocity),
+                     lambda velocity=velocity: client.publish(arm.joint_names, q, velocity))
+        message = received[-1]
+        assert len(message.coriolis_matrix) == len(message.coriolis_torque) == 0
+        np.testing.assert_array_equal(message.gravity_torque, G)
+
+
+def test_bad_joint_states_are_dropped_and_the_node_goes_on(client, start):
+    start(robot_description_file=PENDULUM)
+    torques = client.listen(JointState, '/dynamics_node/gravity_torque')
+    client.until(lambda: torques, lambda: client.publish(['hinge'], [0.5]))
+    client.during(0.3)
+    torques.clear()
+
+    def garbage():
+        client.publish(['hinge'], [])
+        client.publish(['hinge'], [0.5, 0.5])
+        client.publish(['hinge', 'hinge'], [0.5, 0.5])
+        client.publish(['hinge'], [np.nan])
+        client.publish(['hinge'], [np.inf])
+        client.publish(['hinge'], [0.5], [1.0, 2.0])
+        client.publish([], [])
+    client.during(0.5, garbage)
+    assert torques == []
+    client.until(lambda: torques, lambda: client.publish(['hinge'], [0.0]))
+    assert torques[-1].effort[0] == pytest.approx(0.5 * 3 * 0.7 * 9.81)
+
+
+def test_the_description_comes_from_the_topic_and_a_bad_one_is_survived(client, start):
+    start()
+    torques = client.listen(JointState, '/dynamics_node/gravity_torque')
+    client.until(lambda: client.description.get_subscription_count())
+    for text in ('', '<robot', '<robot name="r"/>', 'no xml \x00'):
+        client.description.publish(String(data=text))
+        client.during(0.1)
+    client.description.publish(String(data=PENDULUM.read_text()))
+    client.until(lambda: torques, lambda: client.publish(['hinge'], [0.0]))
+    # A worse one later: the model stays.
+    client.description.publish(String(data='<robot name="r"/>'))
+    client.during(0.3)
+    torques.clear()
+    client.until(lambda: torques, lambda: client.publish(['hinge'], [0.0]))
+    assert torques[-1].effort[0] == pytest.approx(0.5 * 3 * 0.7 * 9.81)
+
+
+def test_an_impossible_start_is_one_clear_line_and_exit_code_1(start):
+    cases = [({'robot_description_file': 'no_such.urdf'}, "cannot read 'no_such.urdf'"),
+             ({'gravity': '[0.0, 0.0]'}, 'gravity: expected 3 numbers, got [0.0, 0.0]'),
+             ({'robot_description_file': PENDULUM, 'joints': '[elbow]'},
+              "joints: 'elbow' is not a joint that can be moved; available: hinge"),
+             ({'robot_description_file': PENDULUM, 'effort_limits': '[1.0, 2.0]'},
+              'effort_limits: expected 1 numbers for hinge, or none; got 2')]
+    processes = [(start(**parameters), text) for parameters, text in cases]
+    for process, text in processes:
+        code, output = process.wait(PATIENCE_TO_START)
+        assert code == 1
+        assert text in output
+
+
+PATIENCE_TO_START = 60.0
+
+
+def parameters_request(**values):
+    """Return a request that sets double arrays and doubles."""
+    request = SetParametersAtomically.Request()
+    for name, value in values.items():
+        kind = ParameterType.PARAMETER_DOUBLE
+        wrapped = ParameterValue(type=kind, double_value=0.0)
+        if isinstance(value, list):
+            wrapped = ParameterValue(type=ParameterType.PARAMETER_DOUBLE_ARRAY,
+                                     double_array_value=value)
+        elif isinstance(value, str):
+            wrapped = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=value)
+        else:
+            wrapped.double_value = value
+        request.parameters.append(Parameter(name=name, value=wrapped))
+    return request
+
+
+def test_parameters_change_at_run_time_and_wrong_ones_change_nothing(client, start):
+    start(robot_description_file=PENDULUM)
+    torques = client.listen(JointState, '/dynamics_node/gravity_torque')
+
+    def publish():
+        client.publish(['hinge'], [0.0])
+
+    def set_parameters(**values):
+        return client.call(SetParametersAtomically, '/dynamics_node/set_parameters_atomically',
+                           parameters_request(**values), publish).result
+
+    for values, reason in (
+            ({'gravity': [0.0, 0.0, float('nan')]}, 'gravity: expected a number >= -20'),
+            ({'gravity': [0.0, 19.0, 19.0]}, 'gravity: expected at most 20 m/s^2, got 26.87'),
+            ({'gravity': 'down'}, 'gravity: expected a list of numbers'),
+            ({'gravity': [0.0, 0.0, -1.62], 'state_timeout': 0.0}, 'state_timeout: expected'),
+            ({'stop_behavior': 'faint'}, 'one of ramp_to_zero, hold, zero'),
+            ({'effort_limits': [1.0, 2.0]}, 'expected 1 numbers for hinge'),
+            ({'command_topic': 'other'}, 'read-only')):
+        answer = set_parameters(**values)
+        assert not answer.successful
+        assert reason in answer.reason
+    torques.clear()
+    client.until(lambda: torques, publish)
+    assert torques[-1].effort[0] == pytest.approx(0.5 * 3 * 0.7 * 9.81)
+
+    assert set_parameters(gravity=[0.0, 0.0, -1.62]).successful
+    client.until(lambda: torques[-1].effort[0] == pytest.approx(0.5 * 3 * 0.7 * 1.62), publish)
+
+
+def test_diagnostics_tell_about_model_states_and_output(client, start):
+    received = client.listen(DiagnosticArray, '/diagnostics')
+    start(robot_description_file=PENDULUM)
+
+    def rate():
+        values = {value.key: value.value for status in (received[-1].status if received else ())
+                  for value in status.values}
+        return float(values.get('rate [Hz]', 0.0)) > 10 and values
+
+    values = client.until(rate, lambda: client.publish(['hinge', 'x'], [0.0, 0.0]))
+    assert values['joints'] == 'hinge'
+    assert values['state'] == 'READY'
+    assert values['moving mass [kg]'] == '3'
+    client.until(lambda: any('stale: hinge' in status.message for status in received[-1].status))

@@ -1,0 +1,131 @@
+"""The node in a process of its own, and a client that talks to it over DDS."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray, String
+from std_srvs.srv import SetBool
+
+from dynamics_interfaces.msg import OutputState
+
+LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+PATIENCE = 30.0
+
+
+class NodeProcess:
+    """The executable `dynamics_node` with given parameters."""
+
+    def __init__(self, *remappings, **parameters):
+        arguments = [item for name, value in parameters.items()
+                     for item in ('-p', f'{name}:={value}')]
+        self.process = subprocess.Popen(
+            [sys.executable, '-m', 'dynamics_node.ros.main', '--ros-args', *arguments,
+             *[item for rule in remappings for item in ('-r', rule)]],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ))
+
+    def send(self, number):
+        """Send a signal."""
+        self.process.send_signal(number)
+
+    def wait(self, timeout=10.0):
+        """Wait for the end; return the exit code and everything printed."""
+        output, _ = self.process.communicate(timeout=timeout)
+        return self.process.returncode, output
+
+    def close(self):
+        """End it if it still runs, and check that nothing went wrong inside."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        try:
+            _, output = self.wait()
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            raise
+        assert 'Traceback' not in output, output
+
+
+class Client:
+    """Publishes states, calls services and records what the node says."""
+
+    def __init__(self):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context)
+        self.node = rclpy.create_node('test_client', context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.states = self.node.create_publisher(JointState, 'joint_states', 1)
+        self.description = self.node.create_publisher(String, 'robot_description', LATCHED)
+        self._clients = {}
+        self.commands, self.outputs = [], []
+
+    def record_commands(self, topic='forward_effort_controller/commands'):
+        """Listen to the command topic; `commands` holds (time, list of efforts)."""
+        self.node.create_subscription(
+            Float64MultiArray, topic,
+            lambda message: self.commands.append((time.monotonic(), list(message.data))), 10)
+        self.node.create_subscription(OutputState, '/dynamics_node/state',
+                                      self.outputs.append, LATCHED)
+
+    def listen(self, kind, topic, latched=False):
+        """Return a list that grows by every message on a topic."""
+        received = []
+        self.node.create_subscription(kind, topic, received.append,
+                                      LATCHED if latched else qos_profile_sensor_data)
+        return received
+
+    def publish(self, names, position, velocity=(), effort=()):
+        """Publish one joint state, stamped now."""
+        message = JointState(name=list(names), position=[float(q) for q in position],
+                             velocity=[float(qd) for qd in velocity],
+                             effort=[float(tau) for tau in effort])
+        message.header.stamp = self.node.get_clock().now().to_msg()
+        self.states.publish(message)
+
+    def until(self, condition, action=None, timeout=PATIENCE, period=0.01):
+        """Spin, doing `action` every period, until a condition holds; return its value."""
+        end = time.monotonic() + timeout
+        due = time.monotonic()
+        while not (result := condition()):
+            if time.monotonic() > end:
+                raise AssertionError(f'not within {timeout} s: {condition}')
+            if action is not None and time.monotonic() >= due:
+                action()
+                due += period
+            self.executor.spin_once(timeout_sec=min(period, 0.005))
+        return result
+
+    def during(self, seconds, action=None, period=0.01):
+        """Spin for some time, doing `action` every period."""
+        end = time.monotonic() + seconds
+        self.until(lambda: time.monotonic() >= end, action, seconds + PATIENCE, period)
+
+    def call(self, kind, name, request=None, action=None, timeout=PATIENCE):
+        """Call a service of the node."""
+        if name not in self._clients:
+            self._clients[name] = self.node.create_client(kind, name)
+        client = self._clients[name]
+        self.until(client.service_is_ready, action, timeout)
+        future = client.call_async(request or kind.Request())
+        self.until(future.done, action, timeout)
+        return future.result()
+
+    def enable(self, value, action=None):
+        """Ask for output on or off."""
+        return self.call(SetBool, '/dynamics_node/enable', SetBool.Request(data=value), action)
+
+    def output_is(self, name):
+        """Return a condition: the node's output is in a state."""
+        return lambda: bool(self.outputs) and self.outputs[-1].name == name
+
+    def close(self):
+        """Leave ROS."""
+        self.executor.shutdown()
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
