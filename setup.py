@@ -1,10 +1,16 @@
 """Install the package where ament, colcon and `ros2 run` look for it."""
 
-from glob import glob
+from pathlib import Path
 
 from setuptools import find_packages, setup
 
 package_name = 'dynamics_node'
+
+
+def files(folder, pattern):
+    """Return the files of a folder as setuptools wants them: relative paths as text."""
+    return sorted(str(path) for path in Path(folder).glob(pattern))
+
 
 setup(
     name=package_name,
@@ -13,9 +19,9 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
-        (f'share/{package_name}/launch', glob('launch/*.launch.py')),
-        (f'share/{package_name}/config', glob('config/*.yaml')),
-        (f'share/{package_name}/config/robots', glob('config/robots/*.urdf')),
+        (f'share/{package_name}/launch', files('launch', '*.launch.py')),
+        (f'share/{package_name}/config', files('config', '*.yaml')),
+        (f'share/{package_name}/config/robots', files('config/robots', '*.urdf')),
     ],
     install_requires=['setuptools', 'numpy', 'numba', 'yourdfpy'],
     extras_require={

@@ -7,7 +7,8 @@ Robot dynamics from a URDF: mass matrix, Coriolis matrix, gravity torque. Needs 
 
 """
 
-from .dynamics import DynamicsTerms, RobotModel
+from typing import TYPE_CHECKING
+
 from .errors import (
     ArgumentError,
     DynamicsError,
@@ -16,9 +17,20 @@ from .errors import (
     SingularMassMatrixError,
 )
 
+if TYPE_CHECKING:
+    from .dynamics import DynamicsTerms, RobotModel
+
 __version__ = '0.1.0'
 
 __all__ = [
     'ArgumentError', 'DynamicsError', 'DynamicsTerms', 'InertiaError', 'RobotDescriptionError',
     'RobotModel', 'SingularMassMatrixError', '__version__',
 ]
+
+
+def __getattr__(name):
+    # Loaded on first use: numba takes a second, and not everything in here needs it.
+    if name in ('DynamicsTerms', 'RobotModel'):
+        from . import dynamics
+        return getattr(dynamics, name)
+    raise AttributeError(f'module {__name__!r} has no attribute {name!r}')

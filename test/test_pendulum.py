@@ -6,15 +6,14 @@ holds the pendulum up (the lecture's own G pushes it down).
 
 """
 
-import numpy as np
-import pytest
-from support.robots import PENDULUM
-
 from dynamics_node import RobotModel
 from dynamics_node.inertia import cylinder, pseudo_inertia_by_integration
 from dynamics_node.kernels import textbook
 from dynamics_node.urdf import read_urdf
 from dynamics_node.urdf.inertial import link_pseudo_inertia
+import numpy as np
+import pytest
+from support.robots import PENDULUM
 
 M, L, R, g = 3.0, 0.7, 0.05, 9.81
 EPS = np.finfo(float).eps

@@ -6,7 +6,7 @@ room of the package builds on these functions, so their conventions (frames, sig
 
 """
 
-from .consistency import ConsistencyReport, check_physical, consistency_report
+from .consistency import check_physical, consistency_report, ConsistencyReport
 from .integration import pseudo_inertia_by_integration
 from .pseudo_inertia import (
     axial_moments,

@@ -1,11 +1,11 @@
-"""Physical consistency: does a real body exist for a pseudo-inertia matrix?"""
+"""Physical consistency: whether a real body exists for a pseudo-inertia matrix."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import ArgumentError, InertiaError
 from .pseudo_inertia import inertia_tensor_at_com
+from ..errors import ArgumentError, InertiaError
 
 # Rounding moves eigenvalues by this much, relative to the trace of J.
 RELATIVE_TOLERANCE = 10.0 * np.finfo(float).eps

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..errors import ArgumentError
 from .pseudo_inertia import transform_pseudo_inertia
+from ..errors import ArgumentError
 
 
 def cylinder(mass, radius, length, transform=None):

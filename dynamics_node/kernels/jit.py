@@ -1,10 +1,12 @@
 """The one place that decides how kernels are compiled."""
 
+from typing import Any
+
 import numba
 
 # fastmath stays off: it may assume that there is no NaN, and the checks for NaN live on it.
 # error_model 'numpy' follows IEEE 754 on division instead of raising in compiled code.
-_OPTIONS = {'nogil': True, 'error_model': 'numpy', 'fastmath': False}
+_OPTIONS: Any = {'nogil': True, 'error_model': 'numpy', 'fastmath': False}
 
 
 def compiled(function):

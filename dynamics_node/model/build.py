@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from .mimic import resolve_mimic
+from .tree import KinematicTree, LinkFrame, PRISMATIC, REVOLUTE
 from ..inertia import combine
 from ..urdf.inertial import link_pseudo_inertia
-from .mimic import resolve_mimic
-from .tree import PRISMATIC, REVOLUTE, KinematicTree, LinkFrame
 
 
 def build_tree(description):
@@ -37,7 +37,7 @@ def build_tree(description):
         joint_names=tuple(index),
         body_names=tuple(joint.name for joint in moving),
         parent=np.array([links[joint.parent].body for joint in moving], dtype=np.int64),
-        kind=np.array([PRISMATIC if joint.type == 'prismatic' else REVOLUTE
+        kind=np.array([PRISMATIC if joint.kind == 'prismatic' else REVOLUTE
                        for joint in moving], dtype=np.int64),
         coordinate=np.array([index[leader] for leader, _, _ in resolved], dtype=np.int64),
         multiplier=np.array([multiplier for _, multiplier, _ in resolved], dtype=float),
@@ -51,8 +51,8 @@ def build_tree(description):
         limits=_stack([(joint.lower, joint.upper, joint.velocity, joint.effort)
                        for joint in free], (4,)),
         dynamics=_stack([(joint.damping, joint.friction) for joint in free], (2,)),
-        is_continuous=tuple(joint.type == 'continuous' for joint in free),
-        is_revolute=tuple(joint.type != 'prismatic' for joint in free),
+        is_continuous=tuple(joint.kind == 'continuous' for joint in free),
+        is_revolute=tuple(joint.kind != 'prismatic' for joint in free),
         warnings=description.warnings + _massless(moving, inertia),
     )
 
@@ -60,10 +60,10 @@ def build_tree(description):
 def _walk(description):
     # Depth first in the order of the URDF; a stack, because a chain may be as long as the
     # recursion limit. The placement of a link is relative to the body that carries it.
-    children = {}
+    children: dict[str, list] = {}
     for joint in description.joints:
         children.setdefault(joint.parent, []).append(joint)
-    moving = []
+    moving: list = []
     links = {description.root: LinkFrame(-1, np.eye(4))}
     stack = children.get(description.root, [])[::-1]
     while stack:
@@ -80,7 +80,7 @@ def _walk(description):
 
 def _lumped(description, links, count):
     # Row -1 is the base.
-    parts = [[] for _ in range(count + 1)]
+    parts: list[list] = [[] for _ in range(count + 1)]
     for link in description.links:
         if link.inertial is None:
             continue

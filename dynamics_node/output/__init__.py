@@ -1,9 +1,10 @@
 """
 The path to the arm: measured states in, commands out, and everything that may say no.
 
-Plain classes with the time passed in: no ROS, no thread, no clock of their own. What may change
-here: when output is allowed and how it starts, is limited and stops. Nothing may publish an
-effort that did not pass `EffortLimiter`.
+Plain classes with the time passed in: no ROS, no thread, no clock of their own.
+
+What may change here: when output is allowed and how it starts, is limited and stops. Nothing may
+publish an effort that did not pass `EffortLimiter`.
 
 """
 

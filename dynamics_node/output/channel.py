@@ -43,8 +43,8 @@ class OutputChannel:
     Attributes
     ----------
     machine : OutputStateMachine
-    limiter : EffortLimiter or None
-        None until a robot with limits is known.
+    limiter : EffortLimiter
+        Of no joint at all until `set_limiter`.
     settings : OutputSettings
 
     """
@@ -52,7 +52,7 @@ class OutputChannel:
     def __init__(self, settings, on_change=None):
         """Start with output off and no limits."""
         self.machine = OutputStateMachine(on_change)
-        self.limiter = None
+        self.limiter = EffortLimiter(np.zeros(0), np.zeros(0), np.zeros(0))
         self.settings = settings
         self._last_time = 0.0
         self._stop_from = np.zeros(0)
@@ -69,7 +69,7 @@ class OutputChannel:
         """
         last = self.limiter
         self.limiter = EffortLimiter(limits, rate_limits, scale)
-        if last is not None and self.machine.is_on:
+        if self.machine.is_on:
             self.limiter.carry_on_from(last)
 
     def enable(self, now):

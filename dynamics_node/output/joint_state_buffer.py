@@ -1,7 +1,7 @@
 """The newest measured state of every joint, merged from messages in any order."""
 
-import math
 from collections import Counter
+import math
 
 import numpy as np
 
@@ -66,7 +66,7 @@ class JointStateBuffer:
         self._known_names = None
         self._source = self._target = np.empty(0, dtype=np.intp)
         self.accepted = 0
-        self.rejected = Counter()
+        self.rejected: Counter[str] = Counter()
 
     def update(self, now, names, positions, velocities=()):
         """

@@ -3,19 +3,18 @@
 import math
 import time
 
+from dynamics_interfaces.msg import OutputState as OutputStateMessage
 import numpy as np
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool
 
-from dynamics_interfaces.msg import OutputState as OutputStateMessage
-
-from ..output import OutputChannel
-from ..output.channel import OutputSettings
 from .guard import guarded, guarded_service
 from .messages import to_field
 from .qos import COMMAND, OUTPUT_STATE
+from ..output import OutputChannel
+from ..output.channel import OutputSettings
 
 # How often the watchdog looks and a stop sends its next command, s.
 TICK = 0.01
@@ -65,7 +64,6 @@ class CommandOutput:
                                            clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._watchdog.cancel()
         node.create_service(SetBool, '~/enable', self._enable_requested)
-        self._changed(self.channel.machine.state, self.channel.machine.reason)
 
     @property
     def topic(self):
@@ -79,6 +77,10 @@ class CommandOutput:
             self._publish(command)
             if self.channel.limiter.saturated.any():
                 self._warn_saturated(effort)
+
+    def announce(self):
+        """Publish the state that the output starts in: READY means that there is a model."""
+        self._changed(self.channel.machine.state, self.channel.machine.reason)
 
     def configure(self):
         """Take over parameters and the limits of the robot in force."""
@@ -194,8 +196,11 @@ class CommandOutput:
         message = OutputStateMessage(state=int(state), name=state.name, reason=reason)
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._state_publisher.publish(message)
-        (self.logger.error if state.name == 'FAULT' else self.logger.info)(
-            f'output {state.name}: {reason}')
+        # Two lines, because rclpy ties the severity to the line that logs.
+        if state.name == 'FAULT':
+            self.logger.error(f'output FAULT: {reason}')
+        else:
+            self.logger.info(f'output {state.name}: {reason}')
         self._on_change()
 
     def _warn_saturated(self, effort):

@@ -81,7 +81,7 @@ class Diagnostics:
         return self._status('output', level, f'{machine.name}: {machine.reason}', {
             'state': machine.name, 'reason': machine.reason, 'topic': self._output.topic,
             'commands': str(self._output.commands),
-            'saturated commands': str(limiter.saturations if limiter else 0)})
+            'saturated commands': str(limiter.saturations)})
 
     def _status(self, part, level, message, values):
         return DiagnosticStatus(

@@ -8,11 +8,11 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
+from .node import DynamicsNode
+from .parameter_table import ParameterError
 from ..dynamics import RobotModel
 from ..errors import DynamicsError
 from ..kernels.warm_up import warm_up
-from .node import DynamicsNode
-from .parameter_table import ParameterError
 
 # Time that a stop may take after SIGINT or SIGTERM, s; launch kills after 5.
 STOP_WITHIN = 2.5

@@ -2,17 +2,13 @@
 
 import time
 
+from dynamics_interfaces.msg import JointDynamics
 import numpy as np
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import JointState
 
-from dynamics_interfaces.msg import JointDynamics
-
-from ..dynamics import RobotModel
-from ..errors import DynamicsError
-from ..output import RejectedStateError
 from .command_output import CommandOutput
 from .description_source import DescriptionSource
 from .diagnostics import Diagnostics
@@ -23,6 +19,9 @@ from .parameters import Parameters
 from .qos import JOINT_STATES, RESULT
 from .robot import Robot
 from .services import DynamicsServices
+from ..dynamics import RobotModel
+from ..errors import DynamicsError
+from ..output import RejectedStateError
 
 # Seconds without a description or without joint states after which the log says what to do.
 PATIENCE = 5.0
@@ -59,12 +58,11 @@ class DynamicsNode(Node):
             JointState, 'joint_states', self._joint_state_received, JOINT_STATES,
             qos_overriding_options=QoSOverridingOptions.with_default_policies())
         self._state_topic = subscription.topic_name
-        self._diagnostics = None
         self.output = CommandOutput(self, self.parameters, self._get_robot, self._state_topic,
                                     self._output_changed)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.output)
         self._answers = DynamicsServices(self, self._get_robot, self.parameters,
-                                          self.logger.error)
+                                         self.logger.error)
         self._wants_enable = self.parameters['enable_on_start']
         self.source = DescriptionSource(self, self.parameters, self._described,
                                         self.on_internal_error)
@@ -96,8 +94,11 @@ class DynamicsNode(Node):
             kept = 'the one before stays in force' if self._robot else 'still waiting for one'
             self.logger.error(f'robot description from {origin} refused, {kept}: {error}')
             return True
+        is_first = self._robot is None
         self._robot = robot
         self.output.configure()
+        if is_first:
+            self.output.announce()
         self._announce(model, robot, origin)
         return True
 
@@ -194,7 +195,8 @@ class DynamicsNode(Node):
     def _try_enable(self):
         is_accepted, text = self.output.enable()
         self._wants_enable = not is_accepted
-        (self.logger.info if is_accepted else self.logger.warning)(f'enable_on_start: {text}')
+        if not is_accepted:
+            self.logger.warning(f'enable_on_start: {text}', throttle_duration_sec=10.0)
 
     def _give_hints(self):
         if time.monotonic() - self._start < PATIENCE:
@@ -213,5 +215,4 @@ class DynamicsNode(Node):
                 '(parameter joints chooses others)', throttle_duration_sec=10.0)
 
     def _output_changed(self):
-        if self._diagnostics is not None:
-            self._diagnostics.publish()
+        self._diagnostics.publish()

@@ -6,8 +6,8 @@ them together. A parameter that is not in here does not exist.
 
 """
 
-import math
 from dataclasses import dataclass
+import math
 from typing import Any
 
 from ..output.channel import STOP_BEHAVIORS
@@ -131,8 +131,8 @@ PARAMETERS = (
               'robot_description', read_only=True),
     Parameter('robot_description_file', TEXT, '', 'Path of a URDF. Empty: the topic '
               'robot_description', read_only=True),
-    Parameter('gravity', DOUBLES, (0.0, 0.0, -9.81), 'Gravity acceleration in the root link\'s '
-              'frame, m/s², points down', length=3, low=-MAX_GRAVITY, high=MAX_GRAVITY),
+    Parameter('gravity', DOUBLES, (0.0, 0.0, -9.81), 'Gravity acceleration in the frame of '
+              'the root link, m/s², points down', length=3, low=-MAX_GRAVITY, high=MAX_GRAVITY),
     Parameter('command_topic', TEXT, 'forward_effort_controller/commands', 'Where the efforts '
               'go while output is enabled', read_only=True),
     Parameter('enable_on_start', FLAG, False, 'Enable the output as soon as it is possible. '
@@ -151,7 +151,7 @@ PARAMETERS = (
               '(as fast as the rate limits allow) or hold (the last effort stays)',
               choices=STOP_BEHAVIORS),
     Parameter('effort_limits', DOUBLES, (), 'Largest effort per joint, N m or N, in the order '
-              'of joints. Empty: the URDF\'s; a joint without a limit refuses to be enabled',
+              'of joints. Empty: those of the URDF; a joint without a limit refuses to be enabled',
               low=0.0, low_open=True),
     Parameter('effort_rate_limits', DOUBLES, (), 'Largest change of effort per joint, N m/s or '
               'N/s. Empty: the effort limit per 0.1 s', low=0.0, low_open=True),

@@ -3,8 +3,16 @@
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.parameter import Parameter as RosParameter
 
-from .parameter_table import DOUBLE, DOUBLES, FLAG, PARAMETERS, TEXT, TEXTS, ParameterError
-from .parameter_table import check_all
+from .parameter_table import (
+    check_all,
+    DOUBLE,
+    DOUBLES,
+    FLAG,
+    ParameterError,
+    PARAMETERS,
+    TEXT,
+    TEXTS,
+)
 
 _TYPES = {
     DOUBLE: RosParameter.Type.DOUBLE, DOUBLES: RosParameter.Type.DOUBLE_ARRAY,
@@ -39,7 +47,6 @@ class Parameters:
 
         """
         self._node = node
-        self._on_change = self._further_check = None
         self.values = check_all({name: value for name, value in self._declare().items()
                                  if value is not None})
 

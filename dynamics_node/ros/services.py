@@ -2,18 +2,17 @@
 
 import time
 
-import numpy as np
-
 from dynamics_interfaces.srv import (
     GetCoriolisMatrix,
     GetDynamics,
     GetGravityTorque,
     GetMassMatrix,
 )
+import numpy as np
 
-from ..errors import ArgumentError, DynamicsError
 from .guard import guarded_service
 from .messages import from_field, to_field
+from ..errors import ArgumentError, DynamicsError
 
 
 class NoRobotError(DynamicsError):

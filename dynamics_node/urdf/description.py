@@ -52,7 +52,7 @@ class Joint:
     ----------
     name, parent, child : str
         Of the joint and of the links that it connects.
-    type : str
+    kind : str
         'revolute', 'continuous', 'prismatic' or 'fixed'.
     placement : numpy.ndarray, shape (4, 4)
         Joint frame at position 0 → parent link frame, m.
@@ -69,7 +69,7 @@ class Joint:
     """
 
     name: str
-    type: str
+    kind: str
     parent: str
     child: str
     placement: np.ndarray
@@ -85,7 +85,7 @@ class Joint:
     @property
     def is_movable(self):
         """True unless the joint is fixed."""
-        return self.type != 'fixed'
+        return self.kind != 'fixed'
 
 
 @dataclass(frozen=True)

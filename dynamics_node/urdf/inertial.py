@@ -49,7 +49,8 @@ def inertial_findings(name, inertial, is_moved):
         real body, but are common in published robots.
 
     """
-    problems, warnings = [], []
+    problems: list[str] = []
+    warnings: list[str] = []
     if inertial.mass < 0.0:
         problems.append(f"link '{name}': mass is {inertial.mass:.6g} kg, must be >= 0")
     tolerance = rounding_of(link_pseudo_inertia(inertial))

@@ -6,13 +6,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..errors import RobotDescriptionError
 from .attributes import is_number, number_problems
 from .description import Inertial, Joint, Link, Mimic, RobotDescription
 from .guard import check_text
 from .inertial import inertial_findings
 from .source import load_text
 from .structure import moved_links, root_link, structure_problems
+from ..errors import RobotDescriptionError
 
 # What dynamics reads. Everything else (visuals, collisions, meshes, plugins) is dropped before
 # the text reaches yourdfpy, so no mesh address is ever looked at.
@@ -50,9 +50,12 @@ def read_urdf(source):
     if problems:
         raise RobotDescriptionError(problems)
     limits = _take_soft_limits(robot)
+    # yourdfpy fills in its default, so this has to be seen before.
+    axisless = {joint.get('name') for joint in robot.findall('joint')
+                if joint.find('axis') is None}
     parsed = _parse(robot)
     links, link_problems, link_warnings = _links(parsed.links, moved_links(robot))
-    joints, joint_problems, joint_warnings = _joints(parsed.joints, limits)
+    joints, joint_problems, joint_warnings = _joints(parsed.joints, limits, axisless)
     if link_problems or joint_problems:
         raise RobotDescriptionError(link_problems + joint_problems)
     return RobotDescription(parsed.name, root_link(robot), tuple(links), tuple(joints),
@@ -110,10 +113,10 @@ def _links(parsed, moved):
     return links, problems, warnings
 
 
-def _joints(parsed, limits):
+def _joints(parsed, limits, axisless):
     joints, problems, warnings = [], [], []
     for joint in parsed:
-        axis, problem, warning = _axis(joint)
+        axis, problem, warning = _axis(joint, joint.name in axisless)
         problems += problem
         warnings += warning
         lower, upper = _position_limits(joint)
@@ -125,17 +128,16 @@ def _joints(parsed, limits):
     return joints, problems, warnings
 
 
-def _axis(joint):
-    default = np.array([1.0, 0.0, 0.0])
-    if joint.type == 'fixed':
-        return default, [], []
-    where = f"joint '{joint.name}': axis"
-    if joint.axis is None:
-        return default, [], [f'{where} is missing, (1, 0, 0) is used']
+def _axis(joint, is_missing):
     axis = np.array(joint.axis, dtype=float)
+    if joint.type == 'fixed':
+        return axis, [], []
+    where = f"joint '{joint.name}': axis"
+    if is_missing:
+        return axis, [], [f'{where} is missing, (1, 0, 0) is used']
     length = np.linalg.norm(axis)
     if not length > 1e-9:
-        return default, [f'{where} has length {length:.3g}, must be a direction'], []
+        return axis, [f'{where} has length {length:.3g}, must be a direction'], []
     if abs(length - 1.0) > 1e-6:
         return axis / length, [], [f'{where} has length {length:.6g}, it is normalised to 1']
     return axis / length, [], []

@@ -1,13 +1,12 @@
 """D, C and G element by element against Pinocchio: public robots and random trees."""
 
-import numpy as np
-import pytest
+from dynamics_node import RobotModel
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 from support.pinocchio_oracle import PinocchioOracle
 from support.robots import PUBLIC, public_robot, random_state, random_urdf
-
-from dynamics_node import RobotModel
 
 RELATIVE = 1e-11
 # Where a sum cancels, an element can be arbitrarily smaller than its summands, and then its

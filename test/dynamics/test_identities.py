@@ -2,15 +2,14 @@
 
 import re
 
-import numpy as np
-import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
-from support.robots import random_state, random_urdf
-
 from dynamics_node import RobotModel
 from dynamics_node.inertia.pseudo_inertia import rotation_from_rpy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from support.robots import random_state, random_urdf
 
 seeds = st.integers(0, 2**32 - 1)
 on_random_trees = settings(max_examples=25, deadline=None)

@@ -1,10 +1,9 @@
 """The library as a user meets it: names, shapes, batches, errors."""
 
+from dynamics_node import ArgumentError, RobotDescriptionError, RobotModel, SingularMassMatrixError
 import numpy as np
 import pytest
 from support.robots import PENDULUM, random_state, random_urdf
-
-from dynamics_node import ArgumentError, RobotDescriptionError, RobotModel, SingularMassMatrixError
 
 
 @pytest.fixture(scope='module')
@@ -143,7 +142,7 @@ def test_limits_and_neutral_position_come_from_the_urdf():
 
 
 def test_a_missing_file_is_named():
-    with pytest.raises(RobotDescriptionError, match="cannot read 'no_such.urdf'"):
+    with pytest.raises(RobotDescriptionError, match=r"cannot read 'no_such\.urdf'"):
         RobotModel.from_urdf('no_such.urdf')
 
 

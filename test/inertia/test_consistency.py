@@ -1,10 +1,5 @@
 """The judgement on pseudo-inertia matrices: which violations are found and how they are named."""
 
-import numpy as np
-import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-
 from dynamics_node import ArgumentError, InertiaError
 from dynamics_node.inertia import (
     check_physical,
@@ -13,6 +8,10 @@ from dynamics_node.inertia import (
     transform_pseudo_inertia,
 )
 from dynamics_node.inertia.pseudo_inertia import rotation_from_rpy
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1),

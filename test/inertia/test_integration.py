@@ -1,8 +1,7 @@
 """The definition by numerical integration."""
 
-import numpy as np
-
 from dynamics_node.inertia import pseudo_inertia_by_integration
+import numpy as np
 
 
 def test_a_density_that_varies_is_integrated():

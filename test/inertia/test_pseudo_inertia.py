@@ -1,8 +1,5 @@
 """J: built, taken apart, moved and added."""
 
-import numpy as np
-import pytest
-
 from dynamics_node import ArgumentError
 from dynamics_node.inertia import (
     axial_moments,
@@ -16,6 +13,8 @@ from dynamics_node.inertia import (
     transform_pseudo_inertia,
 )
 from dynamics_node.inertia.pseudo_inertia import rotation_from_rpy
+import numpy as np
+import pytest
 
 TENSOR = np.array([[0.3, -0.02, 0.01], [-0.02, 0.4, 0.03], [0.01, 0.03, 0.35]])
 COM = np.array([0.1, -0.2, 0.3])

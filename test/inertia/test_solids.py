@@ -1,8 +1,5 @@
 """Closed forms of homogeneous solids, held against the definition."""
 
-import numpy as np
-import pytest
-
 from dynamics_node import ArgumentError
 from dynamics_node.inertia import (
     box,
@@ -12,6 +9,8 @@ from dynamics_node.inertia import (
     pseudo_inertia_by_integration,
     sphere,
 )
+import numpy as np
+import pytest
 
 
 def _half_circle(radius):

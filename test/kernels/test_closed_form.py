@@ -4,14 +4,13 @@ import os
 import subprocess
 import sys
 
-import numpy as np
-import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from support.robots import random_state, random_urdf
-
 from dynamics_node import RobotModel
 from dynamics_node.kernels import textbook
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from support.robots import random_state, random_urdf
 
 TOLERANCE = 2e-13
 

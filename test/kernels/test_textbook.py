@@ -1,11 +1,10 @@
 """The specification itself: both forms of the Christoffel symbols, and derivatives."""
 
+from dynamics_node import RobotModel
+from dynamics_node.kernels import textbook
 import numpy as np
 import pytest
 from support.robots import random_urdf
-
-from dynamics_node import RobotModel
-from dynamics_node.kernels import textbook
 
 SEEDS = range(6)
 

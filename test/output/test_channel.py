@@ -2,12 +2,11 @@
 
 import math
 
-import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
-
 from dynamics_node.output import OutputChannel
 from dynamics_node.output.channel import OutputSettings
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
 
 LIMITS, RATES = np.array([10.0, 5.0]), np.array([100.0, 50.0])
 TORQUE = np.array([4.0, -2.0])

@@ -2,13 +2,12 @@
 
 import math
 
-import numpy as np
-import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-
 from dynamics_node.output import JointStateBuffer, RejectedStateError
 from dynamics_node.output.joint_state_buffer import MAX_NAMES
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 NAMES = ('a', 'b', 'c')
 

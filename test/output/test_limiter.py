@@ -1,11 +1,10 @@
 """The limiter: whatever comes in, what goes out is finite, limited and one step away."""
 
-import numpy as np
-import pytest
+from dynamics_node.output import EffortLimiter, InvalidEffortError
 from hypothesis import given
 from hypothesis import strategies as st
-
-from dynamics_node.output import EffortLimiter, InvalidEffortError
+import numpy as np
+import pytest
 
 LIMITS, RATES = np.array([10.0, 2.0]), np.array([100.0, 5.0])
 any_float = st.floats(allow_nan=True, allow_infinity=True)

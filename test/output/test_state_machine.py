@@ -1,9 +1,10 @@
 """The states of the output: which follows which, and when."""
 
-from hypothesis import given
-from hypothesis import strategies as st
+from itertools import pairwise
 
 from dynamics_node.output import OutputState, OutputStateMachine
+from hypothesis import given
+from hypothesis import strategies as st
 
 ALLOWED = {('READY', 'STARTING'), ('READY', 'FAULT'), ('STARTING', 'ACTIVE'),
            ('STARTING', 'STOPPING'), ('ACTIVE', 'STOPPING'), ('STOPPING', 'READY'),
@@ -94,7 +95,7 @@ def test_no_sequence_of_calls_makes_a_step_that_is_not_allowed(calls):
         else:
             machine.stop(now, 1.0, call, is_fault=call == 'fault')
         assert 0.0 <= machine.progress(now) <= 1.0
-    assert set(zip(changes, changes[1:], strict=False)) <= ALLOWED
+    assert set(pairwise(changes)) <= ALLOWED
 
 
 def test_numbers_are_those_of_the_message():

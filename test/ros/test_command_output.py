@@ -2,13 +2,12 @@
 
 import signal
 
+from dynamics_node import RobotModel
 import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from support.robots import ARM7, PENDULUM
-
-from dynamics_node import RobotModel
 
 TOPIC = 'forward_effort_controller/commands'
 HOLD = 0.5 * 3 * 0.7 * 9.81  # the pendulum's gravity torque at 0, N m

@@ -1,16 +1,15 @@
 """The node over DDS: joint states in, gravity torque and dynamics out."""
 
+from diagnostic_msgs.msg import DiagnosticArray
+from dynamics_interfaces.msg import JointDynamics
+from dynamics_node import RobotModel
 import numpy as np
 import pytest
-from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParametersAtomically
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from support.robots import ARM7, PENDULUM
-
-from dynamics_interfaces.msg import JointDynamics
-from dynamics_node import RobotModel
 
 
 @pytest.fixture(scope='module')

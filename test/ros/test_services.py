@@ -1,9 +1,5 @@
 """The services over DDS: given and measured states, orders, and what they refuse."""
 
-import numpy as np
-import pytest
-from support.robots import ARM7
-
 from dynamics_interfaces.srv import (
     GetCoriolisMatrix,
     GetDynamics,
@@ -11,6 +7,9 @@ from dynamics_interfaces.srv import (
     GetMassMatrix,
 )
 from dynamics_node import RobotModel
+import numpy as np
+import pytest
+from support.robots import ARM7
 
 ARM = RobotModel.from_urdf(ARM7)
 N = len(ARM.joint_names)

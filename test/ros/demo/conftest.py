@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 
+import dynamics_node
 import pytest
 import rclpy
 from rclpy.context import Context
@@ -16,8 +17,6 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import SetBool, Trigger
-
-import dynamics_node
 
 ARM7 = Path(__file__).resolve().parents[3] / 'config' / 'robots' / 'arm7.urdf'
 SERVICES = {'set_brakes': SetBool, 'reset': Trigger, 'push': Trigger}

@@ -4,10 +4,9 @@ from pathlib import Path
 import subprocess
 import sys
 
+from dynamics_node.ros.demo.demo import main
 from PIL import Image
 import pytest
-
-from dynamics_node.ros.demo.demo import main
 
 
 @pytest.fixture

@@ -3,9 +3,8 @@
 import ast
 from pathlib import Path
 
-import pytest
-
 import dynamics_node.ros.demo
+import pytest
 
 FILES = sorted(Path(dynamics_node.ros.demo.__file__).parent.glob('*.py'))
 

@@ -1,13 +1,12 @@
 """The engine, without ROS: against Pinocchio, and against what a robot does."""
 
-import numpy as np
-import pinocchio
-import pytest
-
 from dynamics_node.ros.demo.mujoco_arm import MujocoArm, UnstableError
 from dynamics_node.ros.demo.mujoco_model import TIME_STEP
 from dynamics_node.ros.demo.poses import random_poses, start_pose
-from dynamics_node.ros.demo.robot_text import RobotRefused
+from dynamics_node.ros.demo.robot_text import RobotRefusedError
+import numpy as np
+import pinocchio
+import pytest
 
 
 @pytest.fixture
@@ -37,7 +36,7 @@ def oracle(arm7_text):
 
 
 def test_mass_matrix_agrees_with_pinocchio(arm, oracle):
-    """MuJoCo has read the same robot from the file as another library."""
+    """The engine has read the same robot from the file as another library."""
     for pose in random_poses(arm, 50):
         assert np.abs(arm.mass_matrix(pose) - oracle(pose)[0]).max() < 1e-6
 
@@ -133,7 +132,7 @@ def test_gliding_ends_at_the_goal_on_the_brakes(arm):
 
 
 def test_efforts_beyond_the_limits_are_not_clamped(arm):
-    """MuJoCo would clamp an actuator to the URDF's effort limit; this is no actuator."""
+    """The engine would clamp an actuator to the URDF's effort limit; this is no actuator."""
     arm.set_brakes(False)
     arm.set_effort([0, 0, 0, 0, 0, 0, 1200.0, 0])
     arm.step()
@@ -157,6 +156,6 @@ def test_mujoco_s_refusal_becomes_one_sentence():
     """With the reason."""
     ghost = ('<robot name="g"><link name="a"/><link name="b"/><joint name="j" type="continuous">'
              '<parent link="a"/><child link="b"/></joint></robot>')
-    with pytest.raises(RobotRefused, match='MuJoCo cannot simulate this robot: .*mass') as caught:
+    with pytest.raises(RobotRefusedError, match=r'cannot simulate this robot: .*mass') as caught:
         MujocoArm(ghost)
     assert '\n' not in str(caught.value)

@@ -1,8 +1,7 @@
 """Real time on a clock that the test turns."""
 
-import pytest
-
 from dynamics_node.ros.demo.pacing import Pacer
+import pytest
 
 
 def test_as_many_steps_as_time_has_passed():

@@ -1,15 +1,14 @@
 """Start poses, damping, push and effort limits for robots that nobody has prepared."""
 
-import numpy as np
-import pytest
-
 from dynamics_node.ros.demo.damping import add_missing_damping
 from dynamics_node.ros.demo.effort_limits import filled_in_limits, joints_without_limit
 from dynamics_node.ros.demo.mujoco_arm import MujocoArm
 from dynamics_node.ros.demo.mujoco_model import TIME_STEP
 from dynamics_node.ros.demo.poses import choose_pose, gravity_peak, random_poses, start_pose
 from dynamics_node.ros.demo.push import plan_push, WANTED
-from dynamics_node.ros.demo.robot_text import RobotRefused
+from dynamics_node.ros.demo.robot_text import RobotRefusedError
+import numpy as np
+import pytest
 
 
 @pytest.fixture(scope='module')
@@ -41,7 +40,7 @@ def test_a_start_pose_can_be_held_and_falls(arm, choose):
 def test_a_robot_that_is_too_weak_for_itself_is_refused(arm7_text):
     """No pose can be held with 0.001 N m."""
     weak = arm7_text.replace('effort="90"', 'effort="0.001"')
-    with pytest.raises(RobotRefused, match='give the parameter start_pose'):
+    with pytest.raises(RobotRefusedError, match='give the parameter start_pose'):
         choose_pose(MujocoArm(weak))
 
 

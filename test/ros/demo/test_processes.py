@@ -1,8 +1,7 @@
 """Child processes: ended for certain, and their logs shown."""
 
+from dynamics_node.ros.demo.processes import DemoError, Processes
 import pytest
-
-from dynamics_node.ros.demo.processes import DemoFailure, Processes
 
 
 def test_processes_end_with_the_context_and_get_ctrl_c_first():
@@ -21,6 +20,6 @@ def test_a_process_that_ends_by_itself_is_a_failure_with_its_log():
     with Processes() as processes:
         processes.start('helper', 'no_such_module_at_all')
         processes._running['helper'].wait()
-        with pytest.raises(DemoFailure, match='helper ended by itself with exit code 1'):
+        with pytest.raises(DemoError, match='helper ended by itself with exit code 1'):
             processes.check()
         assert 'No module named' in processes.tails()['helper'][-1]

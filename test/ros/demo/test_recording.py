@@ -1,11 +1,10 @@
 """How displacement is measured, and when the demo calls it a failure."""
 
+from dynamics_node.ros.demo.recording import Recording
+from dynamics_node.ros.demo.story import Outcome
 import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
-
-from dynamics_node.ros.demo.recording import Recording
-from dynamics_node.ros.demo.story import Outcome
 
 
 def state(time, **positions):

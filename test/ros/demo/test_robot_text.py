@@ -2,10 +2,9 @@
 
 import math
 
-import pytest
-
 from dynamics_node.ros.demo.mujoco_model import mimic_map
-from dynamics_node.ros.demo.robot_text import movable_joints, mujoco_text, RobotRefused
+from dynamics_node.ros.demo.robot_text import movable_joints, mujoco_text, RobotRefusedError
+import pytest
 
 
 def robot(*joints):
@@ -58,7 +57,7 @@ def test_a_chain_of_mimic_joints_ends_at_the_driven_one():
 ])
 def test_what_cannot_be_simulated_is_refused_with_a_sentence(text, sentence):
     """Before MuJoCo sees it."""
-    with pytest.raises(RobotRefused, match=sentence):
+    with pytest.raises(RobotRefusedError, match=sentence):
         movable_joints(text)
 
 
@@ -68,7 +67,7 @@ def test_what_cannot_be_simulated_is_refused_with_a_sentence(text, sentence):
 ])
 def test_a_mimic_joint_without_an_end_is_refused(inner, sentence):
     """Unknown or in a circle."""
-    with pytest.raises(RobotRefused, match=sentence):
+    with pytest.raises(RobotRefusedError, match=sentence):
         mimic_map(movable_joints(robot(joint('a', inner=inner))))
 
 

@@ -2,10 +2,9 @@
 
 import math
 
+from dynamics_node.ros.demo.mujoco_arm import MujocoArm
 import numpy as np
 import pytest
-
-from dynamics_node.ros.demo.mujoco_arm import MujocoArm
 
 DRIVEN = ['shoulder_yaw', 'shoulder_pitch', 'upper_arm_roll', 'elbow_pitch', 'forearm_roll',
           'wrist_pitch', 'wrist_roll', 'left_finger_slide']

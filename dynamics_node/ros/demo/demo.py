@@ -1,0 +1,155 @@
+"""
+The demo: a simulated arm falls, and the node holds it; the figures are measured, not shown.
+
+Two real processes over real DDS: `simulated_robot` (MuJoCo) and the node. Exit code 0 says that
+the arm fell without the node, and stood still with it at two places.
+
+"""
+
+import argparse
+import os
+from pathlib import Path
+import signal
+import sys
+
+import numpy as np
+import rclpy
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args
+from rich.console import Console
+
+from .client import Client
+from .effort_limits import filled_in_limits, joints_without_limit
+from .files import arm7_path, read_robot
+from .mujoco_arm import MujocoArm
+from .plot import draw
+from .processes import DemoError, Processes
+from .recording import Recording
+from .report import print_logs, print_mass_matrix, print_outcome
+from .robot_text import robot_name, RobotRefusedError
+from .story import Outcome, Story
+
+# [s] A busy desktop computer may stop the simulation for longer than the node's 0.1 s.
+STATE_TIMEOUT = 0.5
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the demo and return its exit code."""
+    options = _options(remove_ros_args(sys.argv if args is None else args)[1:])
+    console = Console(highlight=False, width=None if sys.stdout.isatty() else 100)
+    _isolate()
+    # Also when it is terminated or its terminal closes, the demo must end its processes.
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.default_int_handler)
+    try:
+        return _run(options, console)
+    except (DemoError, RobotRefusedError, OSError) as error:
+        console.print(f'demo failed: {error}', style='bold red', markup=False)
+        return 1
+    except KeyboardInterrupt:
+        console.print('interrupted')
+        return 130
+
+
+def _options(arguments: list[str]) -> argparse.Namespace:
+    """Return the command line's options."""
+    parser = argparse.ArgumentParser(description=(__doc__ or '').strip().splitlines()[0])
+    parser.add_argument('--robot', type=Path, help='a URDF file (default: arm7.urdf)')
+    parser.add_argument('--view', action='store_true', help='watch in the MuJoCo viewer')
+    parser.add_argument('--hold', type=float, default=10.0, metavar='SECONDS',
+                        help='how long the node holds the arm before the push (default: 10)')
+    parser.add_argument('--output', type=Path, default=Path('demo.png'), help='the figure')
+    return parser.parse_args(arguments)
+
+
+def _isolate() -> None:
+    """Keep the demo away from real robots, unless the user has chosen a domain."""
+    os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
+    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+
+
+def _run(options: argparse.Namespace, console: Console) -> int:
+    """Run the story between two processes, print and draw what came out."""
+    path = options.robot or arm7_path()
+    text = read_robot(path)
+    arm = MujocoArm(text)
+    console.print(f'[bold]{robot_name(text)}[/bold], driven joints: {len(arm.driven)}, simulated '
+                  f'by MuJoCo, held by dynamics_node (domain {os.environ["ROS_DOMAIN_ID"]})')
+    with Processes() as processes:
+        try:
+            _start(processes, path, arm, options.view, console)
+            outcome = _tell(processes, arm, options.hold, console)
+        except (DemoError, KeyboardInterrupt) as error:
+            if isinstance(error, DemoError):
+                print_logs(console, processes.tails())
+            raise
+    print_outcome(console, outcome)
+    draw(outcome, arm, robot_name(text), options.output)
+    console.print(f'figure: {options.output}', markup=False)
+    return _verdict(outcome, console)
+
+
+def _start(processes: Processes, path: Path, arm: MujocoArm, view: bool,
+           console: Console) -> None:
+    """Start the simulated robot and the node."""
+    processes.start('simulated_robot', 'dynamics_node.ros.demo.simulated_robot',
+                    *(['--view'] if view else []),
+                    '--ros-args', '-p', f'robot_description_file:={path.resolve()}')
+    parameters = ['--ros-args', '-p', f'state_timeout:={STATE_TIMEOUT}']
+    missing = joints_without_limit(arm)
+    if missing:
+        limits = ', '.join(f'{limit:.1f}' for limit in filled_in_limits(arm))
+        parameters += ['-p', f'effort_limits:=[{limits}]']
+        console.print(f'The URDF states no effort limit for {", ".join(missing)}, and the node '
+                      'enables nothing without one: it gets twice the largest gravity torque '
+                      f'that MuJoCo finds, effort_limits = ({limits}) N m or N.')
+    processes.start('dynamics_node', 'dynamics_node.ros.main', *parameters)
+
+
+def _tell(processes: Processes, arm: MujocoArm, hold: float, console: Console) -> Outcome:
+    """Connect, print the mass matrix, and go through the story."""
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        turning = [joint.turns for joint in arm.driven]
+        client = Client(Recording(arm.driven_names, turning), processes.check)
+        client.wait_until_ready()
+        answer = client.mass_matrix()
+        size = len(answer.joint_names)
+        print_mass_matrix(console, answer.joint_names,
+                          np.array(answer.mass_matrix).reshape(size, size))
+        _pass_on_warnings(processes, console)
+        _note_friction(arm, console)
+        story = Story(client, hold, lambda line: console.print(f'• {line}', markup=False))
+        return story.tell()
+    finally:
+        rclpy.try_shutdown()
+
+
+def _note_friction(arm: MujocoArm, console: Console) -> None:
+    """Say where dry friction helps to hold the robot, because it does so without any torque."""
+    sticky = [f'{joint.name} {friction:g}' for joint, friction in zip(arm.joints, arm.friction())
+              if friction > 0.0]
+    if sticky:
+        console.print(f'note: the URDF states dry friction, {", ".join(sticky)} N m or N: it '
+                      'helps to hold still', markup=False)
+
+
+def _pass_on_warnings(processes: Processes, console: Console) -> None:
+    """Print what the simulated robot warns of: what it has added to the URDF."""
+    for line in processes.lines('simulated_robot'):
+        if '[WARN]' in line:
+            console.print(f'note: {line.split("]: ", 1)[-1]}', markup=False)
+
+
+def _verdict(outcome: Outcome, console: Console) -> int:
+    """Print whether all was as it should be, and return the exit code."""
+    failures = outcome.failures()
+    for failure in failures:
+        console.print(f'demo failed: {failure}', style='bold red', markup=False)
+    if not failures:
+        console.print('It falls without the node and stands still with it.', style='bold green')
+    return 1 if failures else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

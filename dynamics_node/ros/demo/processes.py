@@ -1,0 +1,74 @@
+"""The demo's child processes: started with a log each, and ended whatever happens."""
+
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import tempfile
+from types import TracebackType
+
+PATIENCE = 5.0  # [s] for a process to end after SIGINT; the node takes up to 3 s to ramp down
+TAIL = 15  # lines of a log that are shown after a failure
+
+
+class DemoError(RuntimeError):
+    """The demo did not go as it should; the message says what happened, in one sentence."""
+
+
+class Processes:
+    """A context that starts Python modules as processes and ends them when it is left."""
+
+    def __init__(self) -> None:
+        """Start nothing yet."""
+        self._running: dict[str, subprocess.Popen] = {}
+        self._folder = tempfile.TemporaryDirectory(prefix='dynamics_node_demo_')
+
+    def __enter__(self) -> 'Processes':
+        """Enter the context."""
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
+                 traceback: TracebackType | None) -> None:
+        """End all processes, the last started first, and drop their logs."""
+        for name in reversed(list(self._running)):
+            self._end(self._running[name])
+        self._folder.cleanup()
+
+    def start(self, name: str, module: str, *arguments: str) -> None:
+        """Start `python -m module arguments` under a name."""
+        with self._log(name).open('wb') as log:
+            # A session of its own: Ctrl-C in the terminal must reach the demo alone, which then
+            # ends the processes in the right order.
+            self._running[name] = subprocess.Popen(
+                [sys.executable, '-m', module, *arguments], stdin=subprocess.DEVNULL,
+                stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
+
+    def check(self) -> None:
+        """Raise DemoError if a process has ended by itself."""
+        for name, process in self._running.items():
+            if process.poll() is not None:
+                raise DemoError(f'{name} ended by itself with exit code {process.returncode}; '
+                                'its log is above')
+
+    def tails(self) -> dict[str, list[str]]:
+        """Return the last lines of every process's log."""
+        return {name: self.lines(name)[-TAIL:] for name in self._running}
+
+    def lines(self, name: str) -> list[str]:
+        """Return what a process has printed until now."""
+        return self._log(name).read_text(encoding='utf-8', errors='replace').splitlines()
+
+    def _log(self, name: str) -> Path:
+        """Return the path of a process's log."""
+        return Path(self._folder.name) / f'{name}.log'
+
+    @staticmethod
+    def _end(process: subprocess.Popen) -> None:
+        """Ask a process to end as Ctrl-C does, and make it end if it does not."""
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+        try:
+            process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()

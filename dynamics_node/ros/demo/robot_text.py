@@ -1,0 +1,139 @@
+"""
+What the simulator reads from a URDF text itself, with nothing but the standard library.
+
+The simulation judges the node, so it shares no code with the node's own URDF reader.
+
+"""
+
+from dataclasses import dataclass
+import math
+from xml.etree import ElementTree as ET
+
+ONE_DEGREE_OF_FREEDOM = ('revolute', 'continuous', 'prismatic')
+
+
+class RobotRefusedError(ValueError):
+    """The simulator cannot run this robot; the message says why in one sentence."""
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """A joint follows another one: position = multiplier * source + offset."""
+
+    source: str
+    multiplier: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class MovableJoint:
+    """
+    A joint with one degree of freedom.
+
+    Positions in rad or m, velocity per s, effort in N m or N; nothing stated in the URDF means
+    infinite for `lower` and `upper`, and 0.0 for `effort`, `velocity` and `damping`.
+
+    """
+
+    name: str
+    kind: str
+    lower: float
+    upper: float
+    effort: float
+    velocity: float
+    damping: float
+    mimic: Mimic | None
+
+    @property
+    def turns(self) -> bool:
+        """True if the joint turns (rad), False if it slides (m)."""
+        return self.kind != 'prismatic'
+
+
+def parse(text: str) -> ET.Element:
+    """Return the <robot> element of a URDF text."""
+    try:
+        root = ET.fromstring(text.strip())
+    except ET.ParseError as error:
+        raise RobotRefusedError(f'the robot description is not XML: {error}') from error
+    if root.tag != 'robot':
+        raise RobotRefusedError(f'expected a URDF with <robot> at its top, got <{root.tag}>')
+    return root
+
+
+def movable_joints(text: str) -> list[MovableJoint]:
+    """Return the movable joints of a URDF text in the order of the document."""
+    elements = parse(text).findall('joint')
+    for element in elements:
+        if element.get('type') in ('floating', 'planar'):
+            raise RobotRefusedError(f'joint {element.get("name")!r} is {element.get("type")}: the '
+                                    'simulated robot has joints of one degree of freedom only')
+    found = [_joint(e) for e in elements if e.get('type') in ONE_DEGREE_OF_FREEDOM]
+    if not found:
+        raise RobotRefusedError('the robot has no movable joint: there is nothing to simulate')
+    return found
+
+
+def mujoco_text(text: str) -> str:
+    """
+    Return the URDF text as MuJoCo is to read it.
+
+    Dropped: collision shapes (the arm moves freely), meshes (their files are not needed for the
+    motion) and mimic tags (`mujoco_model` couples these joints itself). Inertia is the file's.
+
+    """
+    root = parse(text)
+    for link in root.findall('link'):
+        for shape in link.findall('collision') + link.findall('visual'):
+            if shape.tag == 'collision' or shape.find('geometry/mesh') is not None:
+                link.remove(shape)
+    for joint in root.findall('joint'):
+        for mimic in joint.findall('mimic'):
+            joint.remove(mimic)
+    for old in root.findall('mujoco'):
+        root.remove(old)
+    ET.SubElement(ET.SubElement(root, 'mujoco'), 'compiler', {
+        'discardvisual': 'false', 'fusestatic': 'true', 'inertiafromgeom': 'false'})
+    return ET.tostring(root, encoding='unicode')
+
+
+def robot_name(text: str) -> str:
+    """Return the name that the URDF gives the robot, or 'robot'."""
+    return parse(text).get('name') or 'robot'
+
+
+def _joint(element: ET.Element) -> MovableJoint:
+    """Return one <joint> element as a MovableJoint."""
+    limit = _attributes(element.find('limit'))
+    # URDF's own default is 0 for both bounds; a range of nothing is no limit, says MuJoCo too.
+    lower, upper = limit.get('lower', 0.0), limit.get('upper', 0.0)
+    bounded = element.get('type') != 'continuous' and lower < upper
+    return MovableJoint(
+        name=element.get('name', ''),
+        kind=element.get('type', ''),
+        lower=lower if bounded else -math.inf,
+        upper=upper if bounded else math.inf,
+        effort=limit.get('effort', 0.0),
+        velocity=limit.get('velocity', 0.0),
+        damping=_attributes(element.find('dynamics')).get('damping', 0.0),
+        mimic=_mimic(element.find('mimic')))
+
+
+def _mimic(element: ET.Element | None) -> Mimic | None:
+    """Return a <mimic> element, if there is one."""
+    if element is None:
+        return None
+    values = _attributes(element)
+    return Mimic(element.get('joint', ''), values.get('multiplier', 1.0),
+                 values.get('offset', 0.0))
+
+
+def _attributes(element: ET.Element | None) -> dict[str, float]:
+    """Return those attributes of an element that are numbers."""
+    values = {}
+    for key, text in (element.attrib if element is not None else {}).items():
+        try:
+            values[key] = float(text)
+        except ValueError:
+            pass  # names, and vendors' own attributes
+    return values

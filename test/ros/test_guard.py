@@ -1,0 +1,41 @@
+"""No exception leaves a callback."""
+
+from dynamics_node.ros.guard import guarded, guarded_service
+from std_srvs.srv import SetBool
+
+
+class Broken:
+    """Callbacks that fail, and what was told about it."""
+
+    def __init__(self):
+        self.logger = self
+        self.logged, self.told = [], []
+        self.error = self.logged.append
+        self.on_internal_error = self.told.append
+
+    @guarded
+    def callback(self, message):
+        """Fail."""
+        raise ZeroDivisionError(message)
+
+    @guarded_service
+    def service(self, request, response):
+        """Fail after having promised success."""
+        response.success = True
+        raise KeyError('lost')
+
+
+def test_a_failing_callback_is_logged_with_its_traceback_and_told():
+    broken = Broken()
+    assert broken.callback('boom') is None
+    assert broken.told == ['internal error in callback: boom']
+    assert 'Traceback' in broken.logged[0]
+    assert 'ZeroDivisionError' in broken.logged[0]
+
+
+def test_a_failing_service_answers_that_it_failed():
+    broken = Broken()
+    answer = broken.service(SetBool.Request(), SetBool.Response())
+    assert not answer.success
+    assert "internal error: 'lost'" in answer.message
+    assert len(broken.told) == 1

@@ -1,0 +1,95 @@
+"""The one-way street: errors, inertia → urdf → model → kernels → dynamics → ros."""
+
+import ast
+from pathlib import Path
+import subprocess
+import sys
+
+import pytest
+
+PACKAGE = Path(__file__).parents[1] / 'dynamics_node'
+# Room → rooms of this package that it may import.
+STREET = {
+    'errors': set(),
+    'inertia': {'errors'},
+    'urdf': {'errors', 'inertia'},
+    'model': {'errors', 'inertia', 'urdf'},
+    'kernels': {'errors', 'model'},
+    'dynamics': {'errors', 'inertia', 'urdf', 'model', 'kernels'},
+    'output': {'errors'},
+    'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'output'},
+}
+LIBRARY = {'numpy', 'numba', 'yourdfpy'}
+SOURCES = sorted(PACKAGE.rglob('*.py'))
+
+
+def room_of(path):
+    """Return the room a file is in."""
+    return path.relative_to(PACKAGE).parts[0].removesuffix('.py')
+
+
+def imported(path):
+    """Return (level, dotted name) of every import in a file, also of those inside functions."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from ((0, alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            if node.module is None:
+                yield from ((node.level, alias.name) for alias in node.names)
+            else:
+                yield node.level, node.module
+
+
+def own_rooms(path):
+    """Return the rooms of this package that a file imports."""
+    here = path.relative_to(PACKAGE).parent.parts
+    for level, name in imported(path):
+        if level == 0:
+            assert not name.startswith('dynamics_node'), f'{path}: relative imports inside'
+            continue
+        target = (*here[:len(here) - level + 1], *name.split('.'))
+        yield target[0]
+
+
+@pytest.mark.parametrize('path', SOURCES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_every_file_imports_only_what_its_room_may(path):
+    room = room_of(path)
+    if room == '__init__':
+        return
+    for other in own_rooms(path):
+        assert other == room or other in STREET[room], f'{path}: imports {other}'
+    if room != 'ros':
+        outside = {name.split('.')[0] for level, name in imported(path) if level == 0}
+        unknown = outside - LIBRARY - set(sys.stdlib_module_names)
+        assert not unknown, f'{path}: imports {unknown}'
+
+
+def test_the_simulated_robot_knows_nothing_of_the_library():
+    for path in (PACKAGE / 'ros' / 'demo').glob('*.py'):
+        assert set(own_rooms(path)) <= {'ros'}, path
+
+
+def test_the_library_works_where_no_ros_is_installed():
+    code = ('import sys\n'
+            'class Refuse:\n'
+            '    def find_spec(self, name, path=None, target=None):\n'
+            '        if name.split(".")[0] in ("rclpy", "dynamics_interfaces", "std_msgs"):\n'
+            '            raise ImportError(name)\n'
+            'sys.meta_path.insert(0, Refuse())\n'
+            'import dynamics_node\n'
+            f'robot = dynamics_node.RobotModel.from_urdf({str(PACKAGE.parent)!r}\n'
+            '    "/config/robots/pendulum.urdf")\n'
+            'print(robot.gravity_torque([0.0]))\n'
+            'assert not any(name.startswith("rclpy") for name in sys.modules)\n')
+    run = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                         cwd=PACKAGE.parent, check=False)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.startswith('[10.3')
+
+
+def test_every_room_says_what_it_is_and_what_may_change_there():
+    for path in PACKAGE.rglob('__init__.py'):
+        doc = ast.get_docstring(ast.parse(path.read_text()))
+        assert doc, path
+        if path.parent != PACKAGE:
+            assert 'What may change here' in doc, path
