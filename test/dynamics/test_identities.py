@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from support.robots import random_state, random_urdf
 
 seeds = st.integers(0, 2**32 - 1)
-on_random_trees = settings(max_examples=25, deadline=None)
+on_random_trees = settings(deadline=None)
 
 
 def sample(seed, **options):
