@@ -1,0 +1,31 @@
+# Everything from a bare clone: each command first makes what it needs (.venv, build, install).
+
+SHELL := bash
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint build shell lock clean
+
+# ROBOT, VIEW and PYTHON reach the scripts through the environment.
+
+help: ## This list
+	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
+
+demo: ## A simulated arm held by the node; ROBOT=path.urdf: another robot, VIEW=1: in a window
+	@bash scripts/demo.sh
+
+test: ## All tests; ARGS='...': arguments of pytest
+	@bash scripts/test.sh $(ARGS)
+
+lint: ## ruff and mypy
+	@bash scripts/lint.sh
+
+build: ## Install what is missing and build both packages with colcon
+	@bash scripts/build.sh
+
+shell: ## A bash in which the packages are active
+	@bash scripts/shell.sh
+
+lock: ## Renew the pinned versions in requirements/lock (needs Python 3.10 to 3.13)
+	@bash scripts/lock.sh
+
+clean: ## Remove everything that make has made
+	@bash scripts/clean.sh
