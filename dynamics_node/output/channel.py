@@ -169,17 +169,18 @@ class OutputChannel:
         return self._stopping(now)
 
     def _stopping(self, now):
-        if self.settings.stop_behavior == 'hold':
+        is_over = self.machine.progress(now) >= 1.0
+        if is_over and (self.settings.stop_behavior == 'hold' or not self.limiter.last.any()):
+            # Only now, so that whoever hears of the new state has got the last command before.
             self.machine.advance(now)
-            return self.limiter.last
+            return None
         try:
             command = self.limiter.fade(self._stop_from, 1.0 - self.machine.progress(now),
                                         self._dt(now))
         except InvalidEffortError:  # limits that are no numbers: a stop has to end all the same
-            command = np.zeros(self._stop_from.size)
+            self.limiter.reset()
+            command = self.limiter.last
         self._last_time = now
-        if not command.any():
-            self.machine.advance(now)
         return command
 
     def _dt(self, now):

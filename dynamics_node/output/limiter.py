@@ -89,7 +89,8 @@ class EffortLimiter:
         if effort.shape != self._last.shape:
             raise InvalidEffortError(f'expected {self._last.size} efforts, got shape '
                                      f'{effort.shape}')
-        scaled = effort * self._scale
+        with np.errstate(all='ignore'):  # an overflow is clamped below, a NaN refused at the end
+            scaled = effort * self._scale
         self.saturated = np.abs(scaled) > self._limits
         self.saturations += bool(self.saturated.any())
         clamped = np.clip(scaled, -self._limits, self._limits)

@@ -36,9 +36,13 @@ def main(args=None):
         Exit code: 0 after a signal, 1 if the node could not start.
 
     """
-    # rclpy's own handlers would end the context before the arm has been brought to rest.
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     signals = _Signals()
+    try:
+        # rclpy's own handlers would end the context before the arm has been brought to rest.
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:  # how rcl refuses a command line
+        rclpy.logging.get_logger('dynamics_node').fatal(str(error))
+        return 1
     try:
         _load_what_is_slow()
         node = DynamicsNode()

@@ -166,8 +166,7 @@ install_packages() {
         files+=(-r "$file")
     done < <(requirement_files "$purpose")
     touch .venv/.installing
-    # --no-compile: Python compiles the few modules that are used, when they are used.
-    .venv/bin/python -m pip --disable-pip-version-check install --no-input --no-compile \
+    .venv/bin/python -m pip --disable-pip-version-check install --no-input \
         "${constraints[@]}" "${files[@]}" || code=$?
     if ((code == 0)) || ! has_said 'Installing collected packages'; then
         rm -f .venv/.installing

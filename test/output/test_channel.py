@@ -78,7 +78,9 @@ def test_zero_stops_as_fast_as_the_rate_limits_allow():
 def test_hold_leaves_the_last_command_in_force():
     unit = active(stop_behavior='hold')
     unit.stop(1.0, 'disabled on request')
-    np.testing.assert_array_equal(stopped(unit, 1.0), [TORQUE])
+    assert len(stopped(unit, 1.0)) == 0
+    np.testing.assert_array_equal(unit.limiter.last, TORQUE)
+    assert unit.machine.name == 'READY'
 
 
 def test_a_stale_state_stops_and_latches_with_both_numbers():

@@ -10,6 +10,7 @@ from rcl_interfaces.srv import SetParametersAtomically
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from support.robots import ARM7, PENDULUM
+import yaml
 
 
 @pytest.fixture(scope='module')
@@ -131,13 +132,24 @@ def test_the_description_comes_from_the_topic_and_a_bad_one_is_survived(client, 
     assert torques[-1].effort[0] == pytest.approx(0.5 * 3 * 0.7 * 9.81)
 
 
+def test_the_description_may_be_a_parameter_of_a_file(client, start, tmp_path):
+    path = tmp_path / 'parameters.yaml'
+    path.write_text(yaml.safe_dump(
+        {'/**': {'ros__parameters': {'robot_description': PENDULUM.read_text()}}}))
+    start(parameters_file=path)
+    torques = client.listen(JointState, '/dynamics_node/gravity_torque')
+    client.until(lambda: torques, lambda: client.publish(['hinge'], [0.0]))
+    assert torques[-1].effort[0] == pytest.approx(0.5 * 3 * 0.7 * 9.81)
+
+
 def test_an_impossible_start_is_one_clear_line_and_exit_code_1(start):
     cases = [({'robot_description_file': 'no_such.urdf'}, "cannot read 'no_such.urdf'"),
              ({'gravity': '[0.0, 0.0]'}, 'gravity: expected 3 numbers, got [0.0, 0.0]'),
              ({'robot_description_file': PENDULUM, 'joints': '[elbow]'},
               "joints: 'elbow' is not a joint that can be moved; available: hinge"),
              ({'robot_description_file': PENDULUM, 'effort_limits': '[1.0, 2.0]'},
-              'effort_limits: expected 1 numbers for hinge, or none; got 2')]
+              'effort_limits: expected 1 numbers for hinge, or none; got 2'),
+             ({'gravity': '[0.0, '}, "Couldn't parse parameter override rule")]
     processes = [(start(**parameters), text) for parameters, text in cases]
     for process, text in processes:
         code, output = process.wait(PATIENCE_TO_START)

@@ -21,9 +21,11 @@ PATIENCE = 30.0
 class NodeProcess:
     """The executable `dynamics_node` with given parameters."""
 
-    def __init__(self, *remappings, **parameters):
+    def __init__(self, *remappings, parameters_file=None, **parameters):
         arguments = [item for name, value in parameters.items()
                      for item in ('-p', f'{name}:={value}')]
+        if parameters_file:
+            arguments += ['--params-file', str(parameters_file)]
         self.process = subprocess.Popen(
             [sys.executable, '-m', 'dynamics_node.ros.main', '--ros-args', *arguments,
              *[item for rule in remappings for item in ('-r', rule)]],
