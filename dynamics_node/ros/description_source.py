@@ -2,7 +2,7 @@
 
 from std_msgs.msg import String
 
-from .guard import guarded
+from .guard import logged
 from .qos import ROBOT_DESCRIPTION
 
 
@@ -15,7 +15,7 @@ class DescriptionSource:
 
     """
 
-    def __init__(self, node, parameters, on_description, on_internal_error):
+    def __init__(self, node, parameters, on_description):
         """
         Deliver what is there and listen for more.
 
@@ -25,11 +25,10 @@ class DescriptionSource:
         parameters : Parameters
         on_description : callable(source, origin)
             Source is the URDF text or path; origin says in words where it comes from.
-        on_internal_error : callable(str)
+            Returns whether it is dealt with; otherwise the same text may come again.
 
         """
         self.logger = node.get_logger()
-        self.on_internal_error = on_internal_error
         self._on_description = on_description
         self._last = None
         self.topic = None
@@ -45,7 +44,7 @@ class DescriptionSource:
                                                     ROBOT_DESCRIPTION)
             self.topic = subscription.topic_name
 
-    @guarded
+    @logged
     def _received(self, message):
         if message.data == self._last:
             return

@@ -6,7 +6,7 @@ import traceback
 
 def guarded(method):
     """
-    Wrap a callback of an object that has `logger` and `on_internal_error`.
+    Wrap a callback on the way of the torque, of an object with `logger` and `on_internal_error`.
 
     An exception is logged with its traceback and handed to `on_internal_error(message)`; the
     callback then returns None.
@@ -17,19 +17,32 @@ def guarded(method):
         try:
             return method(self, *arguments)
         except Exception as error:
-            report(self, method.__name__, error)
+            _log(self, method, error)
+            self.on_internal_error(f'internal error in {method.__name__}: {error}')
+            return None
+    return safe
+
+
+def logged(method):
+    """Wrap a callback that no torque depends on: an exception is logged, and that is all."""
+    @functools.wraps(method)
+    def safe(self, *arguments):
+        try:
+            return method(self, *arguments)
+        except Exception as error:
+            _log(self, method, error)
             return None
     return safe
 
 
 def guarded_service(method):
-    """Wrap a service callback like `guarded`; the answer then says that it failed."""
+    """Wrap a service callback: an exception is logged, and the answer says that it failed."""
     @functools.wraps(method)
     def safe(self, request, response):
         try:
             return method(self, request, response)
         except Exception as error:
-            report(self, method.__name__, error)
+            _log(self, method, error)
             failed = type(response)()
             failed.success = False
             failed.message = f'internal error: {error}'
@@ -37,7 +50,5 @@ def guarded_service(method):
     return safe
 
 
-def report(owner, where, error):
-    """Log an exception with its traceback and tell the owner."""
-    owner.logger.error(f'{where}: {error}\n{traceback.format_exc()}')
-    owner.on_internal_error(f'internal error in {where}: {error}')
+def _log(owner, method, error):
+    owner.logger.error(f'{method.__name__}: {error}\n{traceback.format_exc()}')

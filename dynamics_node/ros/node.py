@@ -12,11 +12,11 @@ from sensor_msgs.msg import JointState
 from .command_output import CommandOutput
 from .description_source import DescriptionSource
 from .diagnostics import Diagnostics
-from .guard import guarded
+from .guard import guarded, logged
 from .messages import to_field
 from .parameter_table import ParameterError
 from .parameters import Parameters
-from .qos import JOINT_STATES, RESULT
+from .qos import joint_states, RESULT
 from .robot import Robot
 from .services import DynamicsServices
 from ..dynamics import RobotModel
@@ -55,17 +55,16 @@ class DynamicsNode(Node):
         self._gravity_publisher = self.create_publisher(JointState, '~/gravity_torque', RESULT)
         self._dynamics_publisher = self.create_publisher(JointDynamics, '~/dynamics', RESULT)
         subscription = self.create_subscription(
-            JointState, 'joint_states', self._joint_state_received, JOINT_STATES,
+            JointState, 'joint_states', self._joint_state_received,
+            joint_states(self.parameters['allow_several_state_publishers']),
             qos_overriding_options=QoSOverridingOptions.with_default_policies())
         self._state_topic = subscription.topic_name
         self.output = CommandOutput(self, self.parameters, self._get_robot, self._state_topic,
                                     self._output_changed)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.output)
-        self._answers = DynamicsServices(self, self._get_robot, self.parameters,
-                                         self.logger.error)
+        self._answers = DynamicsServices(self, self._get_robot, self.parameters)
         self._wants_enable = self.parameters['enable_on_start']
-        self.source = DescriptionSource(self, self.parameters, self._described,
-                                        self.on_internal_error)
+        self.source = DescriptionSource(self, self.parameters, self._described)
         self.parameters.watch(self._reconfigured, self._check_against_robot)
         self.create_timer(1.0, self._every_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -89,7 +88,7 @@ class DynamicsNode(Node):
             robot = Robot(model, self.parameters['joints'])
             self._check_against_robot(self.parameters.values, robot)
         except (DynamicsError, ParameterError) as error:
-            if self.source_is_parameter(origin):
+            if origin.startswith('parameter'):
                 raise
             kept = 'the one before stays in force' if self._robot else 'still waiting for one'
             self.logger.error(f'robot description from {origin} refused, {kept}: {error}')
@@ -101,11 +100,6 @@ class DynamicsNode(Node):
             self.output.announce()
         self._announce(model, robot, origin)
         return True
-
-    @staticmethod
-    def source_is_parameter(origin):
-        """Tell whether a description came with the start-up parameters."""
-        return origin.startswith('parameter')
 
     def _announce(self, model, robot, origin):
         self.logger.info(f'robot description from {origin}: {model}; joints: '
@@ -184,7 +178,7 @@ class DynamicsNode(Node):
         result.header.frame_id = robot.model.tree.root
         self._dynamics_publisher.publish(result)
 
-    @guarded
+    @logged
     def _every_second(self):
         if self._wants_enable:
             self._try_enable()

@@ -3,12 +3,12 @@
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.parameter import Parameter as RosParameter
 
+from .guard import logged
 from .parameter_table import (
     check_all,
     DOUBLE,
     DOUBLES,
     FLAG,
-    ParameterError,
     PARAMETERS,
     TEXT,
     TEXTS,
@@ -47,6 +47,7 @@ class Parameters:
 
         """
         self._node = node
+        self.logger = node.get_logger()
         self.values = check_all({name: value for name, value in self._declare().items()
                                  if value is not None})
 
@@ -85,10 +86,11 @@ class Parameters:
     def _check(self, ros_parameters):
         try:
             self._merged(ros_parameters)
-        except ParameterError as error:
+        except Exception as error:  # whatever it is, nothing has been changed yet
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
+    @logged
     def _take(self, ros_parameters):
         if not any(item.name in self.values for item in ros_parameters):
             return

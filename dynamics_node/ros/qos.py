@@ -3,13 +3,23 @@
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 
 
-def _newest(reliability, durability=QoSDurabilityPolicy.VOLATILE):
-    return QoSProfile(history=QoSHistoryPolicy.KEEP_LAST, depth=1, reliability=reliability,
+def _newest(reliability, durability=QoSDurabilityPolicy.VOLATILE, depth=1):
+    return QoSProfile(history=QoSHistoryPolicy.KEEP_LAST, depth=depth, reliability=reliability,
                       durability=durability)
 
 
-# An old joint state is worth nothing, so lost ones are not asked for again.
-JOINT_STATES = _newest(QoSReliabilityPolicy.BEST_EFFORT)
+def joint_states(several_publishers):
+    """
+    Return the quality of service of joint_states.
+
+    An old joint state is worth nothing: lost ones are not asked for again, and one place in the
+    queue lets the newest win. Several publishers share that queue, though, and an arm's state
+    would be lost whenever the gripper's comes right behind it; so then there are more places.
+
+    """
+    return _newest(QoSReliabilityPolicy.BEST_EFFORT, depth=8 if several_publishers else 1)
+
+
 # As robot_state_publisher publishes it: whoever comes later still gets it.
 ROBOT_DESCRIPTION = _newest(QoSReliabilityPolicy.RELIABLE, QoSDurabilityPolicy.TRANSIENT_LOCAL)
 OUTPUT_STATE = ROBOT_DESCRIPTION

@@ -27,7 +27,7 @@ class DynamicsServices:
 
     """
 
-    def __init__(self, node, get_robot, parameters, on_internal_error):
+    def __init__(self, node, get_robot, parameters):
         """
         Create the services of a node.
 
@@ -36,11 +36,9 @@ class DynamicsServices:
         node : rclpy.node.Node
         get_robot : callable() -> Robot or None
         parameters : Parameters
-        on_internal_error : callable(str)
 
         """
         self.logger = node.get_logger()
-        self.on_internal_error = on_internal_error
         self._get_robot = get_robot
         self._parameters = parameters
         for kind, name, callback in (

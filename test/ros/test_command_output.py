@@ -230,3 +230,18 @@ def test_enabling_on_start_waits_until_nothing_speaks_against_it(client, start):
     answer = client.enable(True, level(client))
     assert answer.success
     assert 'already enabled' in answer.message
+
+
+def test_two_broadcasters_at_the_same_moment_do_not_starve_each_other(client, start):
+    arm = RobotModel.from_urdf(ARM7)
+    start(robot_description_file=ARM7, allow_several_state_publishers='true')
+    client.record_commands()
+    gripper = client.node.create_publisher(JointState, 'joint_states', 1)
+
+    def publish():
+        client.publish(arm.joint_names[:7], arm.neutral_position[:7])
+        gripper.publish(JointState(name=['left_finger_slide'], position=[0.01]))
+    client.until(gripper.get_subscription_count, publish)
+    enabled(client, publish)
+    client.during(1.0, publish)
+    assert client.outputs[-1].name == 'ACTIVE'

@@ -1,6 +1,6 @@
 """No exception leaves a callback."""
 
-from dynamics_node.ros.guard import guarded, guarded_service
+from dynamics_node.ros.guard import guarded, guarded_service, logged
 from std_srvs.srv import SetBool
 
 
@@ -17,6 +17,11 @@ class Broken:
     def callback(self, message):
         """Fail."""
         raise ZeroDivisionError(message)
+
+    @logged
+    def aside(self):
+        """Fail where it does not matter."""
+        raise ZeroDivisionError
 
     @guarded_service
     def service(self, request, response):
@@ -38,4 +43,11 @@ def test_a_failing_service_answers_that_it_failed():
     answer = broken.service(SetBool.Request(), SetBool.Response())
     assert not answer.success
     assert "internal error: 'lost'" in answer.message
-    assert len(broken.told) == 1
+    assert 'KeyError' in broken.logged[0]
+
+
+def test_a_callback_that_no_torque_depends_on_is_only_logged():
+    broken = Broken()
+    assert broken.aside() is None
+    assert 'ZeroDivisionError' in broken.logged[0]
+    assert broken.told == []
