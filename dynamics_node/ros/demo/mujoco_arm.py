@@ -46,6 +46,7 @@ class MujocoArm:
         self._scratch = mujoco.MjData(self.model)
         self._glide: Glide | None = None
         self._push_ends = 0.0
+        self._push_force = np.zeros(3)
         self.place(np.zeros(len(self.driven)))
 
     @property
@@ -110,7 +111,7 @@ class MujocoArm:
 
     def push(self, force: Sequence[float], duration: float) -> None:
         """Apply a force [N] in the base frame at the last link's centre of mass for a time [s]."""
-        self.data.xfrc_applied[self.last_link, :3] = force
+        self._push_force = np.array(force, dtype=float)
         self._push_ends = self.data.time + duration
 
     def step(self, count: int = 1) -> None:
@@ -126,6 +127,9 @@ class MujocoArm:
         """
         before = self.driven_position
         for _ in range(count):
+            if self._push_ends:
+                # Anew for every step: the viewer writes its mouse's force here, or zero.
+                self.data.xfrc_applied[self.last_link, :3] = self._push_force
             if self.braked:
                 self._step_braked()
             else:

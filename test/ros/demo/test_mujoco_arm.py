@@ -90,6 +90,18 @@ def test_the_gravity_torque_holds_it(arm):
     assert np.degrees(np.abs(arm.position - before)[:7].max()) < 0.01
 
 
+def test_a_viewer_that_clears_external_forces_does_not_stop_a_push(arm):
+    """As MuJoCo's passive viewer does each time it is shown the state."""
+    arm.set_brakes(False)
+    before = arm.driven_position
+    arm.set_effort(arm.gravity_torque(before))
+    arm.push([0.0, 20.0, 0.0], 0.1)
+    for _ in range(100):
+        arm.data.xfrc_applied[:] = 0.0
+        arm.step(2)
+    assert np.abs(arm.driven_position - before).max() > 0.02
+
+
 def test_a_push_ends_after_its_time(arm):
     """The force acts for the duration and not longer."""
     arm.set_effort(arm.gravity_torque(arm.driven_position))
