@@ -187,9 +187,9 @@ class RobotModel:
         docs/mathematics.md, equation (15).
 
         """
-        states, lead = self._states('q', q)
-        out = np.empty((len(states), self._n, self._n))
-        closed_form.mass_matrix(*self._packed, states, out)
+        lead, [q] = self._states(q=q)
+        out = np.empty((len(q), self._n, self._n))
+        closed_form.mass_matrix(*self._packed, q, out)
         return out.reshape(*lead, self._n, self._n)
 
     def coriolis_matrix(self, q, qd):
@@ -294,8 +294,8 @@ class RobotModel:
         docs/mathematics.md, equation (20).
 
         """
-        q, qd = self._broadcast(q=q, qd=qd)
-        return 0.5 * np.einsum('...i,...ij,...j->...', qd, self.mass_matrix(q), qd)
+        lead, [q, qd] = self._states(q=q, qd=qd)
+        return 0.5 * np.einsum('bi,bij,bj->b', qd, self.mass_matrix(q), qd).reshape(lead)
 
     def dynamics(self, q, qd):
         """
@@ -321,12 +321,10 @@ class RobotModel:
         docs/mathematics.md, equations (15) to (17).
 
         """
-        q, qd = self._broadcast(q=q, qd=qd)
-        states, lead = self._states('q', q)
-        velocities, _ = self._states('qd', qd)
+        lead, [q, qd] = self._states(q=q, qd=qd)
         n, nn = self._n, self._n * self._n
-        out = np.empty((len(states), 2 * nn + n + 1))
-        closed_form.dynamics(*self._packed, states, velocities, out)
+        out = np.empty((len(q), 2 * nn + n + 1))
+        closed_form.dynamics(*self._packed, q, qd, out)
         return DynamicsTerms(out[:, :nn].reshape(*lead, n, n),
                              out[:, nn:2 * nn].reshape(*lead, n, n),
                              out[:, 2 * nn:-1].reshape(*lead, n))
@@ -355,9 +353,9 @@ class RobotModel:
         docs/mathematics.md, equation (1).
 
         """
-        q, qd, qdd = self._broadcast(q=q, qd=qd, qdd=qdd)
+        lead, [q, qd, qdd] = self._states(q=q, qd=qd, qdd=qdd)
         D, C, G = self.dynamics(q, qd)
-        return _times(D, qdd) + _times(C, qd) + G
+        return (_times(D, qdd) + _times(C, qd) + G).reshape(*lead, self._n)
 
     def forward_dynamics(self, q, qd, tau):
         """
@@ -387,7 +385,7 @@ class RobotModel:
         docs/mathematics.md, equation (1), solved by a Cholesky factorisation of D.
 
         """
-        q, qd, tau = self._broadcast(q=q, qd=qd, tau=tau)
+        lead, [q, qd, tau] = self._states(q=q, qd=qd, tau=tau)
         D, C, G = self.dynamics(q, qd)
         try:
             L = np.linalg.cholesky(D)
@@ -396,42 +394,41 @@ class RobotModel:
                 'the mass matrix is not positive definite, expected inertia behind every joint: '
                 'check the <inertial> of the moving links') from error
         half = np.linalg.solve(L, (tau - _times(C, qd) - G)[..., None])
-        return np.linalg.solve(L.swapaxes(-1, -2), half)[..., 0]
+        return np.linalg.solve(L.swapaxes(-1, -2), half).reshape(*lead, self._n)
 
     def _gravity_block(self, q):
-        states, lead = self._states('q', q)
-        out = np.empty((len(states), self._n + 1))
-        closed_form.gravity_torque(*self._packed, states, out)
+        lead, [q] = self._states(q=q)
+        out = np.empty((len(q), self._n + 1))
+        closed_form.gravity_torque(*self._packed, q, out)
         return out.reshape(*lead, self._n + 1)
 
-    def _states(self, name, value):
-        # Always a fresh C-ordered array: numba compiles read-only or strided ones as a type of
-        # their own, and nobody should wait for the compiler in the middle of a control loop.
-        array = np.array(value, dtype=float, order='C')
-        if array.shape[-1:] != (self._n,):
-            raise ArgumentError(f'{name}: expected shape (..., {self._n}) for joints '
-                                f'{list(self.joint_names)}, got {array.shape}')
-        lead = array.shape[:-1]
-        return array.reshape(math.prod(lead), self._n), lead
-
-    def _broadcast(self, **values):
-        arrays = [np.asarray(value, dtype=float) for value in values.values()]
-        if all(array.shape == arrays[0].shape for array in arrays):
-            return arrays
+    def _states(self, **values):
+        # The batch axes, and each argument with shape (B, n). Always fresh C-ordered arrays:
+        # numba compiles read-only or strided ones as a type of their own, and nobody should
+        # wait for the compiler in the middle of a control loop.
+        arrays = [np.array(value, dtype=float, order='C') for value in values.values()]
         for name, array in zip(values, arrays, strict=True):
             if array.shape[-1:] != (self._n,):
                 raise ArgumentError(f'{name}: expected shape (..., {self._n}) for joints '
                                     f'{list(self.joint_names)}, got {array.shape}')
+        if any(array.shape != arrays[0].shape for array in arrays):
+            arrays = self._broadcast(values, arrays)
+        lead = arrays[0].shape[:-1]
+        count = math.prod(lead)
+        return lead, [array.reshape(count, self._n) for array in arrays]
+
+    @staticmethod
+    def _broadcast(names, arrays):
         try:
-            return np.broadcast_arrays(*arrays)
+            return [np.array(array, order='C') for array in np.broadcast_arrays(*arrays)]
         except ValueError as error:
             shapes = ', '.join(f'{name} {array.shape}'
-                               for name, array in zip(values, arrays, strict=True))
+                               for name, array in zip(names, arrays, strict=True))
             raise ArgumentError(f'expected batch axes that fit, got {shapes}') from error
 
 
 def _times(matrix, vector):
-    return np.einsum('...ij,...j->...i', matrix, vector)
+    return np.einsum('bij,bj->bi', matrix, vector)
 
 
 def _gravity_vector(value):
