@@ -17,8 +17,6 @@ class JointSelection:
         m joint names.
     index : numpy.ndarray of int, shape (m,)
         Their places in the robot's q.
-    others : tuple of str
-        The robot's joints that are not selected.
 
     """
 
@@ -38,37 +36,15 @@ class JointSelection:
             If a name is unknown, of a fixed or mimic joint, or given twice.
 
         """
-        self._robot = robot
         available = robot.joint_names
         self.names = tuple(names) or available
-        unknown = [name for name in self.names if name not in available]
+        unknown = [name for name in dict.fromkeys(self.names) if name not in available]
         twice = sorted({name for name in self.names if self.names.count(name) > 1})
         if unknown or twice:
             wrong = [f"'{name}' is not a joint that can be moved" for name in unknown]
             wrong += [f"'{name}' is given twice" for name in twice]
             raise ArgumentError(f'joints: {"; ".join(wrong)}; available: {", ".join(available)}')
         self.index = np.array([available.index(name) for name in self.names], dtype=np.intp)
-        self.others = tuple(name for name in available if name not in self.names)
-
-    def full(self, values, rest):
-        """
-        Put the selected joints' values into those of all joints.
-
-        Parameters
-        ----------
-        values : array_like, shape (m,)
-            In the order of `names`.
-        rest : numpy.ndarray, shape (n,)
-            Values of all joints; those of the selected ones are replaced in the answer.
-
-        Returns
-        -------
-        numpy.ndarray, shape (n,)
-
-        """
-        result = np.array(rest, dtype=float)
-        result[self.index] = values
-        return result
 
     def permutation(self, names):
         """

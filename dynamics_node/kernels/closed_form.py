@@ -1,10 +1,15 @@
 """
 The closed form: D, C and G in two sweeps over the tree. Compiled.
 
-Equation numbers are those of docs/mathematics.md, section 4. Every 4x4 matrix there has few
-different numbers, and only those are kept:
+Equation numbers are those of docs/mathematics.md, section 4. They hold in every frame at rest;
+here each joint has one of its own, with the axes of the base and its origin on the joint. So a
+light finger far from the base keeps all its digits. What passes from one joint to another is
+moved by the offset between them, equation (21).
 
-    twist     xi  = (wx wy wz vx vy vz)                     joint twist, base frame
+Every 4x4 matrix has few different numbers, and only those are kept:
+
+    pose          = (rotation, row-major; origin; offset)   body → base; offset: from the parent
+    twist     xi  = (wx wy wz vx vy vz)                     of the joint
     composite Jc  = (m, hx hy hz, xx xy xz yy yz zz)        symmetric 4x4
     momentum  Lc  = (xx xy xz yx yy yz zx zy zz, x y z)     3x4: left 3x3 block, last column
 
@@ -55,10 +60,11 @@ def dynamics(structure, numbers, q, qd, out):
         row = out[state]
         row[:] = 0.0
         outward(structure, numbers, q[state], pose, twist, composite)
-        _outward_velocity(structure, numbers, qd[state], twist, composite, twist_rate, momentum)
-        _inward_dynamics(structure, numbers, twist, composite, twist_rate, momentum,
+        _outward_velocity(structure, numbers, qd[state], pose, twist, composite, twist_rate,
+                          momentum)
+        _inward_dynamics(structure, numbers, pose, twist, composite, twist_rate, momentum,
                          row[:n * n].reshape(n, n), row[n * n:2 * n * n].reshape(n, n))
-        _gravity_from_composites(structure, numbers, twist, composite, row[2 * n * n:])
+        _gravity_from_composites(structure, numbers, pose, twist, composite, row[2 * n * n:])
 
 
 @compiled
@@ -79,7 +85,7 @@ def mass_matrix(structure, numbers, q, out):
     for state in range(q.shape[0]):
         out[state] = 0.0
         outward(structure, numbers, q[state], pose, twist, composite)
-        _inward_mass(structure, numbers, twist, composite, out[state])
+        _inward_mass(structure, numbers, pose, twist, composite, out[state])
 
 
 @compiled
@@ -100,13 +106,13 @@ def gravity_torque(structure, numbers, q, out):
     for state in range(q.shape[0]):
         out[state] = 0.0
         outward(structure, numbers, q[state], pose, twist, composite)
-        _accumulate(structure, composite)
-        _gravity_from_composites(structure, numbers, twist, composite, out[state])
+        _inward_composites(structure, pose, composite)
+        _gravity_from_composites(structure, numbers, pose, twist, composite, out[state])
 
 
 @compiled
 def _workspace(bodies):
-    return np.empty((bodies, 12)), np.empty((bodies, 6)), np.empty((bodies, 10))
+    return np.empty((bodies, 15)), np.empty((bodies, 6)), np.empty((bodies, 10))
 
 
 @compiled
@@ -119,12 +125,13 @@ def outward(structure, numbers, q, pose, twist, composite):
     structure, numbers : numpy.ndarray
         See `packing.pack`.
     q : numpy.ndarray, shape (n,)
-    pose : numpy.ndarray, shape (N, 12)
-        Overwritten: rotation row-major, translation; body frame → base frame.
+    pose : numpy.ndarray, shape (N, 15)
+        Overwritten: rotation row-major and origin, body frame → base frame; offset of the
+        origin from the parent's, in the axes of the base, m.
     twist : numpy.ndarray, shape (N, 6)
-        Overwritten: base frame, equation (9).
+        Overwritten: in the joint's own frame, equation (9).
     composite : numpy.ndarray, shape (N, 10)
-        Overwritten: K_k, equation (10).
+        Overwritten: K_k in the joint's own frame, equation (10).
 
     """
     for k in range(structure.shape[0]):
@@ -140,31 +147,28 @@ def outward(structure, numbers, q, pose, twist, composite):
 def _joint_frame(parent, row, pose, here):
     # A_parent X_k: the joint frame at position 0, in the base frame.
     if parent < 0:
-        here[:] = row[:12]
+        here[:12] = row[:12]
+        here[12:] = row[9:12]
         return
     up = pose[parent]
     for i in range(3):
         a, b, c = up[3 * i], up[3 * i + 1], up[3 * i + 2]
         for j in range(3):
             here[3 * i + j] = a * row[j] + b * row[3 + j] + c * row[6 + j]
-        here[9 + i] = (a * row[TRANSLATION] + b * row[TRANSLATION + 1]
-                       + c * row[TRANSLATION + 2] + up[9 + i])
+        here[12 + i] = (a * row[TRANSLATION] + b * row[TRANSLATION + 1]
+                        + c * row[TRANSLATION + 2])
+        here[9 + i] = up[9 + i] + here[12 + i]
 
 
 @compiled
 def _joint_twist(kind, row, here, xi):
-    # (9): revolute w = axis, v = -w x p; prismatic w = 0, v = axis. The axis and its line do
-    # not move with the joint's own position, so the frame at position 0 will do.
+    # (9) with the origin on the joint: revolute w = axis, v = 0; prismatic w = 0, v = axis. The
+    # axis does not turn with the joint's own position, so the frame at position 0 will do.
     ax, ay, az = row[AXIS], row[AXIS + 1], row[AXIS + 2]
-    x = here[0] * ax + here[1] * ay + here[2] * az
-    y = here[3] * ax + here[4] * ay + here[5] * az
-    z = here[6] * ax + here[7] * ay + here[8] * az
-    if kind == _PRISMATIC:
-        xi[0], xi[1], xi[2] = 0.0, 0.0, 0.0
-        xi[3], xi[4], xi[5] = x, y, z
-    else:
-        xi[0], xi[1], xi[2] = x, y, z
-        xi[3], xi[4], xi[5] = _cross(here[9], here[10], here[11], x, y, z)
+    first = 3 if kind == _PRISMATIC else 0
+    xi[:] = 0.0
+    for i in range(3):
+        xi[first + i] = here[3 * i] * ax + here[3 * i + 1] * ay + here[3 * i + 2] * az
 
 
 @compiled
@@ -173,6 +177,7 @@ def _move(kind, row, position, xi, here):
     if kind == _PRISMATIC:
         for i in range(3):
             here[9 + i] += position * xi[3 + i]
+            here[12 + i] += position * xi[3 + i]
         return
     s, c = math.sin(position), math.cos(position)
     ax, ay, az = row[AXIS], row[AXIS + 1], row[AXIS + 2]
@@ -186,39 +191,41 @@ def _move(kind, row, position, xi, here):
 
 @compiled
 def _pseudo_inertia_in_base(row, here, K):
-    # (10): K = A J Aᵀ. With R, p from A and Sigma, h, m from J:
-    # second moments R Sigma Rᵀ + (R h) pᵀ + p (R h)ᵀ + m p pᵀ, first moments R h + m p.
-    m = row[INERTIA]
+    # (10): K = A J Aᵀ in the axes of the base, with the origin on the joint: R Sigma Rᵀ, R h, m.
     hx, hy, hz = row[INERTIA + 1], row[INERTIA + 2], row[INERTIA + 3]
     xx, xy, xz = row[INERTIA + 4], row[INERTIA + 5], row[INERTIA + 6]
     yy, yz, zz = row[INERTIA + 7], row[INERTIA + 8], row[INERTIA + 9]
-    K[0] = m
-    for i in range(3):
-        K[1 + i] = here[3 * i] * hx + here[3 * i + 1] * hy + here[3 * i + 2] * hz
+    K[0] = row[INERTIA]
     entry = 4
     for i in range(3):
         a, b, c = here[3 * i], here[3 * i + 1], here[3 * i + 2]
-        u, v, w = (a * xx + b * xy + c * xz, a * xy + b * yy + c * yz,
-                   a * xz + b * yz + c * zz)
+        K[1 + i] = a * hx + b * hy + c * hz
+        u, v, w = a * xx + b * xy + c * xz, a * xy + b * yy + c * yz, a * xz + b * yz + c * zz
         for j in range(i, 3):
-            rotated = u * here[3 * j] + v * here[3 * j + 1] + w * here[3 * j + 2]
-            K[entry] = (rotated + K[1 + i] * here[9 + j] + here[9 + i] * K[1 + j]
-                        + m * here[9 + i] * here[9 + j])
+            K[entry] = u * here[3 * j] + v * here[3 * j + 1] + w * here[3 * j + 2]
             entry += 1
-    for i in range(3):
-        K[1 + i] += m * here[9 + i]
 
 
 @compiled
-def _outward_velocity(structure, numbers, qd, twist, K, twist_rate, momentum):
-    # (11) V_k = V_parent + xi_k qd_k, (14) rate of xi_k, and V_k K_k, the summand of (13).
+def _outward_velocity(structure, numbers, qd, pose, twist, K, twist_rate, momentum):
+    # (11) V_k = V_parent + xi_k qd_k, (14) rate of xi_k, and V_k K_k, the summand of (13). The
+    # parent's twist is moved to this joint first, (21).
     velocity = np.empty((structure.shape[0], 6))
     for k in range(structure.shape[0]):
         V, xi = velocity[k], twist[k]
         speed = numbers[k, MULTIPLIER] * qd[structure[k, COORDINATE]]
         parent = structure[k, PARENT]
         for i in range(6):
-            V[i] = xi[i] * speed + (velocity[parent, i] if parent >= 0 else 0.0)
+            V[i] = xi[i] * speed
+        if parent >= 0:
+            up = velocity[parent]
+            x, y, z = _cross(up[0], up[1], up[2], pose[k, 12], pose[k, 13], pose[k, 14])
+            V[0] += up[0]
+            V[1] += up[1]
+            V[2] += up[2]
+            V[3] += up[3] + x
+            V[4] += up[4] + y
+            V[5] += up[5] + z
         _commutator(V, xi, twist_rate[k])
         _momentum(V, K[k], momentum[k])
 
@@ -248,21 +255,44 @@ def _momentum(V, K, L):
 
 
 @compiled
-def _accumulate(structure, composite):
+def _inward_composites(structure, pose, composite):
     # (12): Jc_j = sum of K over the subtree of j, from the tips inward.
     for j in range(structure.shape[0] - 1, -1, -1):
-        parent = structure[j, PARENT]
-        if parent >= 0:
-            composite[parent] += composite[j]
+        if structure[j, PARENT] >= 0:
+            _add_composite(composite[j], pose[j], composite[structure[j, PARENT]])
 
 
 @compiled
-def _inward_mass(structure, numbers, twist, composite, D):
+def _add_composite(Jc, here, up):
+    # (12) and (21): the parent's composite gains this one, moved by the offset d.
+    # h + m d and Sigma + h dᵀ + d hᵀ + m d dᵀ.
+    m = Jc[0]
+    up[0] += m
+    entry = 4
+    for i in range(3):
+        d = here[12 + i]
+        up[1 + i] += Jc[1 + i] + m * d
+        for j in range(i, 3):
+            up[entry] += (Jc[entry] + Jc[1 + i] * here[12 + j] + d * Jc[1 + j]
+                          + m * d * here[12 + j])
+            entry += 1
+
+
+@compiled
+def _add_momentum(Lc, here, up):
+    # (13) and (21): L + l dᵀ in the left block, l in the last column.
+    for i in range(3):
+        for j in range(3):
+            up[3 * i + j] += Lc[3 * i + j] + Lc[9 + i] * here[12 + j]
+        up[9 + i] += Lc[9 + i]
+
+
+@compiled
+def _inward_mass(structure, numbers, pose, twist, composite, D):
     force = np.empty(6)
     for j in range(structure.shape[0] - 1, -1, -1):
-        parent = structure[j, PARENT]
-        if parent >= 0:
-            composite[parent] += composite[j]
+        if structure[j, PARENT] >= 0:
+            _add_composite(composite[j], pose[j], composite[structure[j, PARENT]])
         _force(twist[j], composite[j], force)
         cj, mj = structure[j, COORDINATE], numbers[j, MULTIPLIER]
         l = j  # noqa: E741 (the symbol of the formula)
@@ -272,17 +302,18 @@ def _inward_mass(structure, numbers, twist, composite, D):
             D[cl, cj] += entry
             if l != j:
                 D[cj, cl] += entry
+            _to_parent(pose[l], force)
             l = structure[l, PARENT]  # noqa: E741
 
 
 @compiled
-def _inward_dynamics(structure, numbers, twist, composite, twist_rate, momentum, D, C):
+def _inward_dynamics(structure, numbers, pose, twist, composite, twist_rate, momentum, D, C):
     force, rate_force, transposed = np.empty(6), np.empty(6), np.empty(3)
     for j in range(structure.shape[0] - 1, -1, -1):
         parent = structure[j, PARENT]
         if parent >= 0:
-            composite[parent] += composite[j]                # (12)
-            momentum[parent] += momentum[j]                  # (13)
+            _add_composite(composite[j], pose[j], composite[parent])
+            _add_momentum(momentum[j], pose[j], momentum[parent])
         _force(twist[j], composite[j], force)
         _force(twist_rate[j], composite[j], rate_force)
         _momentum_force(twist[j], momentum[j], rate_force, transposed)
@@ -299,7 +330,18 @@ def _inward_dynamics(structure, numbers, twist, composite, twist_rate, momentum,
                 C[cj, cl] += scale * (                       # (16), l below j: swapped names
                     _dot(twist_rate[l], force)
                     + xi[0] * transposed[0] + xi[1] * transposed[1] + xi[2] * transposed[2])
+            _to_parent(pose[l], force)
+            _to_parent(pose[l], rate_force)
             l = structure[l, PARENT]  # noqa: E741
+
+
+@compiled
+def _to_parent(here, force):
+    # (21): the axial part gains d x (last column).
+    x, y, z = _cross(here[12], here[13], here[14], force[3], force[4], force[5])
+    force[0] += x
+    force[1] += y
+    force[2] += z
 
 
 @compiled
@@ -337,8 +379,8 @@ def _momentum_force(xi, L, rate_force, transposed):
 
 
 @compiled
-def _gravity_from_composites(structure, numbers, twist, Jc, out):
-    # (17): G_l = -g · (w x h + m v), the last column of xi Jc; and V = -g · h of (20).
+def _gravity_from_composites(structure, numbers, pose, twist, Jc, out):
+    # (17): G_l = -g · (w x h + m v), the last column of xi Jc; and V = -g · (h + m p) of (20).
     bodies, n = structure.shape[0], out.shape[0] - 1
     gx, gy, gz = numbers[bodies, 0], numbers[bodies, 1], numbers[bodies, 2]
     for k in range(bodies):
@@ -348,7 +390,8 @@ def _gravity_from_composites(structure, numbers, twist, Jc, out):
                 + gz * (c + m * twist[k, 5]))
         out[structure[k, COORDINATE]] -= numbers[k, MULTIPLIER] * pull
         if structure[k, PARENT] < 0:
-            out[n] -= gx * hx + gy * hy + gz * hz
+            out[n] -= (gx * (hx + m * pose[k, 9]) + gy * (hy + m * pose[k, 10])
+                       + gz * (hz + m * pose[k, 11]))
 
 
 @compiled

@@ -4,6 +4,7 @@ import numpy as np
 
 from .mimic import resolve_mimic
 from .tree import KinematicTree, LinkFrame, PRISMATIC, REVOLUTE
+from ..errors import RobotDescriptionError
 from ..inertia import combine
 from ..urdf.inertial import link_pseudo_inertia
 
@@ -21,6 +22,11 @@ def build_tree(description):
     KinematicTree
         Its warnings are the description's and one that lists moving bodies without mass.
 
+    Raises
+    ------
+    RobotDescriptionError
+        If numbers are so large that products of them are not finite.
+
     References
     ----------
     docs/mathematics.md, equations (5) and (19).
@@ -32,7 +38,7 @@ def build_tree(description):
     free = [joint for joint in description.joints if joint.is_movable and joint.mimic is None]
     index = {joint.name: i for i, joint in enumerate(free)}
     resolved = [leaders[joint.name] for joint in moving]
-    return KinematicTree(
+    tree = KinematicTree(
         root=description.root,
         joint_names=tuple(index),
         body_names=tuple(joint.name for joint in moving),
@@ -55,6 +61,8 @@ def build_tree(description):
         is_revolute=tuple(joint.kind != 'prismatic' for joint in free),
         warnings=description.warnings + _massless(moving, inertia),
     )
+    _refuse_overflow(tree)
+    return tree
 
 
 def _walk(description):
@@ -87,6 +95,16 @@ def _lumped(description, links, count):
         frame = links[link.name]
         parts[frame.body].append((link_pseudo_inertia(link.inertial), frame.placement))
     return np.array([combine(bodies) for bodies in parts])
+
+
+def _refuse_overflow(tree):
+    # Each number of the description is finite, but their products need not be.
+    for name in ('inertia', 'placement', 'multiplier', 'offset'):
+        array = getattr(tree, name)
+        wrong = [tree.body_names[i] for i in range(len(array)) if not np.isfinite(array[i]).all()]
+        if wrong:
+            raise RobotDescriptionError([f'{name} behind joint {", ".join(wrong)} is not finite: '
+                                         'numbers of the description are too large'])
 
 
 def _massless(moving, inertia):

@@ -85,8 +85,8 @@ class JointStateBuffer:
         Raises
         ------
         RejectedStateError
-            If lengths differ, a name comes twice, or a position of one of the robot's joints
-            is not finite.
+            If lengths differ, a name comes twice, or the position of a needed joint is not
+            finite. That of another joint is passed over.
 
         """
         try:
@@ -105,15 +105,19 @@ class JointStateBuffer:
         if len(velocities) not in (0, len(names)):
             raise RejectedStateError('length', f'expected {len(names)} velocities or none, '
                                      f'got {len(velocities)}')
-        measured = np.asarray(positions, dtype=float)[self._source]
-        if not np.isfinite(measured).all():
-            wrong = [self._names[i] for i in self._target[~np.isfinite(measured)]]
-            raise RejectedStateError('not finite', 'expected finite positions, got NaN or '
-                                     f'infinity for {", ".join(wrong)}')
-        self._position[self._target] = measured
-        self._time[self._target] = now
-        self._velocity[self._target] = (np.asarray(velocities, dtype=float)[self._source]
-                                        if len(velocities) else math.nan)
+        source, target = self._source, self._target
+        measured = np.asarray(positions, dtype=float)[source]
+        is_finite = np.isfinite(measured)
+        if not is_finite.all():
+            wrong = [self._names[i] for i in target[~is_finite] if i in self._needed]
+            if wrong:
+                raise RejectedStateError('not finite', 'expected finite positions, got NaN or '
+                                         f'infinity for {", ".join(wrong)}')
+            source, target, measured = source[is_finite], target[is_finite], measured[is_finite]
+        self._position[target] = measured
+        self._time[target] = now
+        self._velocity[target] = (np.asarray(velocities, dtype=float)[source]
+                                  if len(velocities) else math.nan)
 
     def _learn(self, names):
         # The mapping by name; kept until a message names other joints or another order.

@@ -77,7 +77,8 @@ class EffortLimiter:
         Returns
         -------
         numpy.ndarray, shape (m,)
-            Finite, within the limits, one step from the last command.
+            Finite, one step from the last command, and within the limits, or on the way there
+            if the last command was beyond them.
 
         Raises
         ------
@@ -119,8 +120,10 @@ class EffortLimiter:
     def _step_to(self, target, dt):
         step = self._rate_limits * max(dt, 0.0)
         command = np.clip(target, self._last - step, self._last + step)
-        # Rounding of last + step must not carry a command over its limit.
-        command = np.clip(command, -self._limits, self._limits)
+        # Rounding of last + step must not carry a command over its limit; a limit that was
+        # lowered below the last command is approached at the rate limit.
+        bound = np.maximum(self._limits, np.abs(self._last))
+        command = np.clip(command, -bound, bound)
         if not np.isfinite(command).all():
             raise InvalidEffortError(f'expected finite efforts, got {command.tolist()}')
         self._last[:] = command

@@ -29,6 +29,8 @@ class CommandOutput:
     channel : OutputChannel
     commands : int
         Commands published so far.
+    was_asked : bool
+        Whether anybody has called ~/enable, with true or false.
 
     """
 
@@ -54,6 +56,7 @@ class CommandOutput:
         self._state_topic = state_topic
         self._on_change = on_change
         self.commands = 0
+        self.was_asked = False
         self._message = Float64MultiArray()
         self._publisher = node.create_publisher(
             Float64MultiArray, parameters['command_topic'], COMMAND)
@@ -167,6 +170,7 @@ class CommandOutput:
 
     @guarded_service
     def _enable_requested(self, request, response):
+        self.was_asked = True
         if request.data:
             response.success, response.message = self.enable()
         elif self.channel.machine.is_driving:

@@ -1,18 +1,10 @@
 """The executable `dynamics_node`: start, spin, and leave the arm in a defined state."""
 
-import signal
 import sys
 import time
+import traceback
 
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.signals import SignalHandlerOptions
-
-from .node import DynamicsNode
-from .parameter_table import ParameterError
-from ..dynamics import RobotModel
-from ..errors import DynamicsError
-from ..kernels.warm_up import warm_up
+from .signals import Signals
 
 # Time that a stop may take after SIGINT or SIGTERM, s; launch kills after 5.
 STOP_WITHIN = 2.5
@@ -36,63 +28,70 @@ def main(args=None):
         Exit code: 0 after a signal, 1 if the node could not start.
 
     """
-    signals = _Signals()
+    # First of all, and rclpy after it: importing takes seconds, and Ctrl-C may come then.
+    signals = Signals()
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
     try:
         # rclpy's own handlers would end the context before the arm has been brought to rest.
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    except RuntimeError as error:  # how rcl refuses a command line
+        node = _start(signals)
+    except Exception as error:  # a command line, a parameter or a description that is refused
         rclpy.logging.get_logger('dynamics_node').fatal(str(error))
+        rclpy.try_shutdown()
         return 1
     try:
-        _load_what_is_slow()
-        node = DynamicsNode()
-        _spin(node, signals)
-        return 0
-    except (DynamicsError, ParameterError) as error:
-        rclpy.logging.get_logger('dynamics_node').fatal(str(error))
-        return 1
+        if node is not None:
+            _spin(node, signals)
     finally:
         rclpy.try_shutdown()
+    return 0
 
 
-def _load_what_is_slow():
-    # The compiled kernels and the URDF parser, before the first callback could wait for them.
+def _start(signals):
+    # None if a signal came first. The compiled kernels and the URDF parser are loaded here,
+    # before the first callback could wait for them.
+    from .node import DynamicsNode
+    from ..dynamics import RobotModel
+    from ..kernels.warm_up import warm_up
     warm_up()
     RobotModel.from_urdf('<robot name="warm_up"><link name="base"/></robot>')
-
-
-class _Signals:
-    """Counts SIGINT and SIGTERM; the second one ends the process at once."""
-
-    def __init__(self):
-        self.name = ''
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._received)
-
-    def _received(self, number, frame):
-        if self.name:
-            sys.exit(0)
-        self.name = signal.Signals(number).name
+    return None if signals.name else DynamicsNode()
 
 
 def _spin(node, signals):
+    from rclpy.executors import SingleThreadedExecutor
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     while not signals.name:
-        executor.spin_once(timeout_sec=SPIN_SLICE)
+        _spin_once(node, executor)
     _bring_to_rest(node, executor, signals.name)
     executor.remove_node(node)
     node.destroy_node()
 
 
-def _bring_to_rest(node, executor, reason):
-    if not node.output.channel.machine.is_on:
-        return
-    node.output.stop(reason, within=STOP_WITHIN)
-    deadline = time.monotonic() + GIVE_UP_AFTER
-    while node.output.channel.machine.is_on and time.monotonic() < deadline:
+def _spin_once(node, executor):
+    try:
         executor.spin_once(timeout_sec=SPIN_SLICE)
-    node.output.flush(0.2)
+    except Exception as error:
+        # Not from our callbacks, which let nothing out, but rclpy has some of its own: a
+        # parameter of an unknown type raises in its parameter services.
+        node.logger.error(f'error in rclpy: {error}\n{traceback.format_exc()}')
+
+
+def _bring_to_rest(node, executor, reason):
+    output = node.output
+    if not output.channel.machine.is_on:
+        return
+    output.stop(reason, within=STOP_WITHIN)
+    deadline = time.monotonic() + GIVE_UP_AFTER
+    while output.channel.machine.is_on and time.monotonic() < deadline:
+        _spin_once(node, executor)
+    if output.channel.machine.is_on:
+        node.logger.error(
+            f'the stop did not end within {GIVE_UP_AFTER:g} s: the last efforts are '
+            f'{output.channel.limiter.last.tolist()}; effort_rate_limits are too small for it')
+    output.flush(0.2)
 
 
 if __name__ == '__main__':

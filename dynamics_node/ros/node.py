@@ -180,7 +180,8 @@ class DynamicsNode(Node):
 
     @logged
     def _every_second(self):
-        if self._wants_enable:
+        # Somebody's own request, also one to disable, counts more than the parameter.
+        if self._wants_enable and not self.output.was_asked:
             self._try_enable()
         self._give_hints()
         self._diagnostics.measure()

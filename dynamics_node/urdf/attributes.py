@@ -4,12 +4,12 @@ import math
 import re
 
 # What URDF writes as a number: no 'nan', no 'inf', no '1_0', no hexadecimal.
-_NUMBER = re.compile(r'[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?')
+_NUMBER = re.compile(r'[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?')
 
 _INERTIA = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
 
 # Element → (attribute, how many numbers, required). The effort and velocity limits are not
-# here: a URDF without them still has dynamics, so `limits.py` judges them.
+# here: a URDF without them still has dynamics.
 _LINK_NUMBERS = {
     'inertial/origin': [('xyz', 3, False), ('rpy', 3, False)],
     'inertial/mass': [('value', 1, True)],

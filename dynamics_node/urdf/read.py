@@ -44,7 +44,11 @@ def read_urdf(source):
     """
     text = load_text(source)
     check_text(text)
-    robot = ElementTree.fromstring(text)
+    try:
+        robot = ElementTree.fromstring(text)
+    except ElementTree.ParseError as error:  # a prefix that no xmlns declares
+        raise RobotDescriptionError([f'it is not XML: {error}; a xacro file must be expanded '
+                                     'first']) from error
     _strip(robot)
     problems = structure_problems(robot) + number_problems(robot)
     if problems:
@@ -136,7 +140,7 @@ def _axis(joint, is_missing):
     if is_missing:
         return axis, [], [f'{where} is missing, (1, 0, 0) is used']
     length = np.linalg.norm(axis)
-    if not length > 1e-9:
+    if not 1e-9 < length < 1e9:
         return axis, [f'{where} has length {length:.3g}, must be a direction'], []
     if abs(length - 1.0) > 1e-6:
         return axis / length, [], [f'{where} has length {length:.6g}, it is normalised to 1']

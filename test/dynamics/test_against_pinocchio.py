@@ -49,3 +49,23 @@ def test_another_gravity_is_the_same_for_both():
     model = RobotModel.from_urdf(text, gravity)
     oracle = PinocchioOracle(text, gravity)
     assert_agrees(model, oracle, *random_state(np.random.default_rng(3), model))
+
+
+@pytest.mark.parametrize('distance', [1.0, 100.0, 10_000.0])
+@pytest.mark.parametrize('carrier', ['fixed', 'continuous'])
+def test_a_light_finger_far_from_the_base_keeps_its_digits(distance, carrier):
+    # Twenty grams at the end of a long way: the moments about the base are 1e8 times larger.
+    inertial = ('<inertial><origin xyz="0.01 0.02 0.03"/><mass value="0.02"/><inertia ixx="1e-6" '
+                'ixy="1e-8" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>')
+    text = ('<robot name="far"><link name="world"/>'
+            f'<link name="arm"/><joint name="way" type="{carrier}"><parent link="world"/>'
+            '<child link="arm"/><axis xyz="0 1 0"/></joint>'
+            f'<link name="a">{inertial}</link><joint name="j" type="continuous">'
+            f'<parent link="arm"/><child link="a"/><origin xyz="{distance} 2 3" rpy="1 2 3"/>'
+            '<axis xyz="0 0 1"/></joint>'
+            f'<link name="b">{inertial}</link><joint name="k" type="continuous">'
+            '<parent link="a"/><child link="b"/><origin xyz="0.05 0 0" rpy="0 1 0"/>'
+            '<axis xyz="1 0 0"/></joint></robot>')
+    model = RobotModel.from_urdf(text)
+    q, qd = random_state(np.random.default_rng(1), model)
+    assert_agrees(model, PinocchioOracle(text), q, qd)

@@ -131,13 +131,14 @@ def test_enabling_again_starts_from_zero():
     np.testing.assert_array_equal(unit.on_effort(5.0, TORQUE), [0, 0])
 
 
-def test_new_limits_while_active_do_not_jump():
+def test_new_limits_while_active_are_approached_at_the_rate():
     unit = active()
     unit.set_limiter(LIMITS / 5, RATES, np.ones(2))
-    command = unit.on_effort(1.01, TORQUE)
-    assert (np.abs(command) <= LIMITS / 5).all()
+    np.testing.assert_allclose(unit.on_effort(1.01, TORQUE), [3.0, -1.5])
+    np.testing.assert_allclose(unit.on_effort(1.02, TORQUE), [2.0, -1.0])
+    np.testing.assert_allclose(unit.on_effort(1.10, TORQUE), LIMITS / 5 * [1, -1])
     unit.set_limiter(LIMITS, RATES, np.ones(2))
-    np.testing.assert_allclose(unit.on_effort(1.02, TORQUE), [3.0, -1.5])
+    np.testing.assert_allclose(unit.on_effort(1.11, TORQUE), [3.0, -1.5])
 
 
 def test_limits_that_are_no_numbers_cannot_keep_a_stop_from_ending():
@@ -152,6 +153,7 @@ def test_limits_that_are_no_numbers_cannot_keep_a_stop_from_ending():
 EVENTS = st.one_of(
     st.just(('enable',)), st.just(('stop',)), st.just(('fault',)),
     st.tuples(st.just('tick'), st.floats(0, 0.2)),
+    st.tuples(st.just('limits'), st.floats(0.05, 1.0)),
     st.tuples(st.just('effort'), st.floats(allow_nan=True), st.floats(allow_nan=True)))
 
 
@@ -168,6 +170,8 @@ def test_no_sequence_of_events_publishes_what_must_not_be_published(behavior, ev
                 last, last_time = np.zeros(2), now
         elif event in ('stop', 'fault'):
             unit.stop(now, event, is_fault=event == 'fault')
+        elif event == 'limits':
+            unit.set_limiter(LIMITS * values[0], RATES, np.ones(2))
         elif event == 'tick':
             was_on = unit.machine.is_on
             command = unit.tick(now, values[0])

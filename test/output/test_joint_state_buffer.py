@@ -88,3 +88,11 @@ def test_what_is_handed_out_is_a_copy():
     unit = buffer()
     unit.position[:] = 99
     np.testing.assert_array_equal(unit.position, [0.1, 0.2, 0.3])
+
+
+def test_nan_of_a_joint_that_is_not_needed_is_passed_over():
+    unit = buffer(needed=('a',))
+    unit.update(0.0, ['b', 'a'], [math.nan, 1.0], [5.0, 6.0])
+    np.testing.assert_array_equal(unit.position, [1.0, 0.2, 0.3])
+    np.testing.assert_array_equal(unit.velocity, [6.0, math.nan, math.nan])
+    assert unit.age(0.0) == 0.0

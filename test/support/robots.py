@@ -18,6 +18,8 @@ PUBLIC = {
     'Z1': 'z1_description/urdf/z1.urdf',
     'Baxter': 'baxter_description/urdf/baxter.urdf',
     'TIAGo': 'tiago_description/robots/tiago.urdf',
+    'TIAGo without hand': 'tiago_description/robots/tiago_no_hand.urdf',
+    'TIAGo Pro': 'tiago_pro_description/urdf/tiago_pro.urdf',
     'iCub': 'icub_description/robots/icub.urdf',
     'Talos': 'talos_data/robots/talos_full_v2.urdf',
     'G1': 'g1_description/urdf/g1_29dof_rev_1_0.urdf',
