@@ -18,8 +18,6 @@ PUBLIC = {
     'Z1': 'z1_description/urdf/z1.urdf',
     'Baxter': 'baxter_description/urdf/baxter.urdf',
     'TIAGo': 'tiago_description/robots/tiago.urdf',
-    'TIAGo without hand': 'tiago_description/robots/tiago_no_hand.urdf',
-    'TIAGo Pro': 'tiago_pro_description/urdf/tiago_pro.urdf',
     'iCub': 'icub_description/robots/icub.urdf',
     'Talos': 'talos_data/robots/talos_full_v2.urdf',
     'G1': 'g1_description/urdf/g1_29dof_rev_1_0.urdf',
@@ -27,10 +25,10 @@ PUBLIC = {
 
 
 def public_robot(name):
-    """Return the path of a public robot's URDF."""
+    """Return the path of a public robot's URDF, by its name in PUBLIC or its path there."""
     package = distribution('example-robot-data')
     robots = Path(package.locate_file('cmeel.prefix/share/example-robot-data/robots'))
-    return robots / PUBLIC[name]
+    return robots / PUBLIC.get(name, name)
 
 
 def random_urdf(seed, joints=None, with_mimic=True, mass_scale=1.0, prismatic=0.3):
