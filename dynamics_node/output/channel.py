@@ -55,11 +55,11 @@ class OutputChannel:
         self.limiter = EffortLimiter(np.zeros(0), np.zeros(0), np.zeros(0))
         self.settings = settings
         self._last_time = 0.0
-        self._stop_from = np.zeros(0)
+        self._start_from = self._stop_from = np.zeros(0)
 
     def set_limiter(self, limits, rate_limits, scale):
         """
-        Take new limits; the last command stays in force, so nothing jumps.
+        Take new limits; the last command stays what it is, so nothing jumps.
 
         Parameters
         ----------
@@ -69,12 +69,12 @@ class OutputChannel:
         """
         last = self.limiter
         self.limiter = EffortLimiter(limits, rate_limits, scale)
-        if self.machine.is_on:
+        if last.last.size == self.limiter.last.size:
             self.limiter.carry_on_from(last)
 
     def enable(self, now):
         """
-        Begin to publish commands, from zero.
+        Begin to publish commands, from zero, or from the command that a stop has held.
 
         Parameters
         ----------
@@ -89,7 +89,7 @@ class OutputChannel:
         """
         if not self.machine.enable(now, self.settings.start_ramp):
             return False
-        self.limiter.reset()
+        self._start_from = self.limiter.last
         self._last_time = now
         return True
 
@@ -115,6 +115,8 @@ class OutputChannel:
             self.machine.hasten(now, within)
         if self.machine.is_driving:
             self._stop_from = self.limiter.last
+            if self.settings.stop_behavior == 'hold':
+                reason += ' (stop_behavior hold: the last efforts stay in force)'
         self.machine.stop(now, ramp, reason, is_fault)
 
     def on_effort(self, now, effort):
@@ -136,7 +138,8 @@ class OutputChannel:
         if not self.machine.is_driving:
             return None
         try:
-            command = self.limiter.command(effort, self.machine.progress(now), self._dt(now))
+            command = self.limiter.command(effort, self.machine.progress(now), self._dt(now),
+                                           self._start_from)
         except InvalidEffortError as error:
             self.stop(now, f'invalid effort: {error}', is_fault=True)
             return None

@@ -13,7 +13,7 @@ class EffortLimiter:
     """
     Turns model efforts into commands that are safe to publish.
 
-    In this order: scale by the joint's gain, clamp to the effort limit, multiply by the ramp,
+    In this order: scale by the joint's gain, clamp to the effort limit, blend in by the ramp,
     limit the step since the last command, and check last that every value is finite. The ramp
     comes before the rate limit, so that the rate limit holds for what is really published.
 
@@ -53,7 +53,7 @@ class EffortLimiter:
         return self._last.copy()
 
     def reset(self):
-        """Forget the last command: the output is off, so the next one starts from zero."""
+        """Take zero for the last command."""
         self._last[:] = 0.0
 
     def carry_on_from(self, other):
@@ -61,7 +61,7 @@ class EffortLimiter:
         self._last[:] = other.last
         self.saturations = other.saturations
 
-    def command(self, effort, ramp, dt):
+    def command(self, effort, ramp, dt, start=0.0):
         """
         Return the command for a model effort.
 
@@ -73,6 +73,8 @@ class EffortLimiter:
             Factor from 0 to 1.
         dt : float
             Time since the last command, s.
+        start : numpy.ndarray, shape (m,), or 0
+            The command at ramp 0, N m or N.
 
         Returns
         -------
@@ -95,7 +97,7 @@ class EffortLimiter:
         self.saturated = np.abs(scaled) > self._limits
         self.saturations += bool(self.saturated.any())
         clamped = np.clip(scaled, -self._limits, self._limits)
-        return self._step_to(ramp * clamped, dt)
+        return self._step_to(ramp * clamped + (1.0 - ramp) * start, dt)
 
     def fade(self, start, ramp, dt):
         """

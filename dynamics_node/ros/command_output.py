@@ -202,7 +202,7 @@ class CommandOutput:
         self._state_publisher.publish(message)
         # Two lines, because rclpy ties the severity to the line that logs.
         if state.name == 'FAULT':
-            self.logger.error(f'output FAULT: {reason}')
+            self.logger.error(f'output FAULT: {reason}; ~/enable tries again')
         else:
             self.logger.info(f'output {state.name}: {reason}')
         self._on_change()

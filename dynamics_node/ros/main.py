@@ -31,6 +31,7 @@ def main(args=None):
     # First of all, and rclpy after it: importing takes seconds, and Ctrl-C may come then.
     signals = Signals()
     import rclpy
+    import rclpy.logging
     from rclpy.signals import SignalHandlerOptions
     try:
         # rclpy's own handlers would end the context before the arm has been brought to rest.

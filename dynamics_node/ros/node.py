@@ -96,9 +96,9 @@ class DynamicsNode(Node):
         is_first = self._robot is None
         self._robot = robot
         self.output.configure()
+        self._announce(model, robot, origin)
         if is_first:
             self.output.announce()
-        self._announce(model, robot, origin)
         return True
 
     def _announce(self, model, robot, origin):
@@ -142,6 +142,11 @@ class DynamicsNode(Node):
             return
         effort = robot.gravity_torque()
         self.output.on_effort(now, effort)
+        if not np.isfinite(effort).all():
+            self.logger.warning('gravity torque is not finite at this joint state: not published',
+                                throttle_duration_sec=1.0)
+            return
+        self.logger.info('joint states arrive: publishing gravity torque', once=True)
         stamp = message.header.stamp
         if stamp.sec == 0 and stamp.nanosec == 0:
             self.logger.info('joint_states has no stamp, arrival time is used', once=True)
@@ -165,6 +170,9 @@ class DynamicsNode(Node):
         if is_known:
             qd[index] = velocity
         terms = robot.model.dynamics(q, qd)
+        coriolis_torque = terms.coriolis_matrix @ qd
+        if not (np.isfinite(terms.mass_matrix).all() and np.isfinite(coriolis_torque).all()):
+            return
         block = np.ix_(index, index)
         result = JointDynamics(
             joint_names=list(robot.joint_names), position=to_field(q[index]),
@@ -173,7 +181,7 @@ class DynamicsNode(Node):
         if is_known:
             result.velocity = to_field(velocity)
             result.coriolis_matrix = to_field(terms.coriolis_matrix[block])
-            result.coriolis_torque = to_field((terms.coriolis_matrix @ qd)[index])
+            result.coriolis_torque = to_field(coriolis_torque[index])
         result.header.stamp = stamp
         result.header.frame_id = robot.model.tree.root
         self._dynamics_publisher.publish(result)

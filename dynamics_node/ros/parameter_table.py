@@ -120,7 +120,8 @@ class Parameter:
         return value
 
     def _error(self, expected, value):
-        text = repr(list(value)) if isinstance(value, (tuple, list)) else repr(value)
+        is_list = hasattr(value, '__len__') and not isinstance(value, (str, bytes))
+        text = repr(list(value)) if is_list else repr(value)
         return ParameterError(f'{self.name}: expected {expected}, got {text[:80]}')
 
 

@@ -94,7 +94,10 @@ class Parameters:
     def _take(self, ros_parameters):
         if not any(item.name in self.values for item in ros_parameters):
             return
-        self.values = self._merged(ros_parameters)
+        before, self.values = self.values, self._merged(ros_parameters)
+        for name, value in self.values.items():
+            if value != before[name]:
+                self.logger.info(f'parameter {name} changed: {before[name]} -> {value}')
         self._on_change(self.values)
 
     def _merged(self, ros_parameters):

@@ -111,4 +111,6 @@ class Robot:
         """Tell whether D of the chosen joints is positive definite at the newest state."""
         index = self.selection.index
         D = self.model.mass_matrix(self.buffer.position)[np.ix_(index, index)]
+        if not np.isfinite(D).all():
+            return False
         return bool(np.linalg.eigvalsh(D)[0] > 0.0)

@@ -75,8 +75,6 @@ class DynamicsServices:
     @guarded_service
     def get_dynamics(self, request, response):
         """Answer D, C, G and the energies."""
-        response.kinetic_energy = response.potential_energy = np.nan
-
         def fill(query):
             terms = query.model.dynamics(query.q, query.qd)
             response.velocity = query.part(query.qd)
@@ -84,8 +82,8 @@ class DynamicsServices:
             response.coriolis_matrix = query.block(terms.coriolis_matrix)
             response.coriolis_torque = query.part(terms.coriolis_matrix @ query.qd)
             response.gravity_torque = query.part(terms.gravity_torque)
-            response.kinetic_energy = float(query.model.kinetic_energy(query.q, query.qd))
-            response.potential_energy = float(query.model.potential_energy(query.q))
+            response.kinetic_energy = float(_finite(query.model.kinetic_energy(query.q, query.qd)))
+            response.potential_energy = float(_finite(query.model.potential_energy(query.q)))
         return self._answer(request, response, fill)
 
     def _answer(self, request, response, fill):
@@ -95,16 +93,30 @@ class DynamicsServices:
                 raise NoRobotError('no robot description yet: publish robot_description, or set '
                                    'the parameter robot_description_file')
             query = _Query(robot, request, self._parameters['state_timeout'])
+            fill(query)
         except DynamicsError as error:
-            response.success = False
-            response.message = str(error)
-            return response
-        fill(query)
+            return _failed(type(response)(), str(error))
         response.joint_names = query.names
         response.position = query.part(query.q)
         response.success = True
         response.message = query.message
         return response
+
+
+def _failed(response, message):
+    # Empty arrays come with a new response; energies are no arrays, and 0 J would be a value.
+    response.success = False
+    response.message = message
+    for name in ('kinetic_energy', 'potential_energy'):
+        if hasattr(response, name):
+            setattr(response, name, np.nan)
+    return response
+
+
+def _finite(values):
+    if not np.isfinite(values).all():
+        raise ArgumentError('the result is not finite: positions or velocities are too large')
+    return values
 
 
 class _Query:
@@ -124,17 +136,19 @@ class _Query:
             self.q = robot.measured_position(time.monotonic(), timeout)
             self.message = 'at the newest measured position'
         self.qd = np.zeros(self.q.size)
-        velocity = getattr(request, 'velocity', ())
-        if len(velocity):
-            self.qd[self._index] = self._checked('velocity', velocity)
+        if hasattr(request, 'velocity'):
+            if len(request.velocity):
+                self.qd[self._index] = self._checked('velocity', request.velocity)
+            else:
+                self.message += ', velocity zero'
 
     def part(self, vector):
         """Return the entries of the wanted joints of a vector of all joints."""
-        return to_field(vector[self._index])
+        return to_field(_finite(vector[self._index]))
 
     def block(self, matrix):
         """Return rows and columns of the wanted joints of a matrix of all joints."""
-        return to_field(matrix[np.ix_(self._index, self._index)])
+        return to_field(_finite(matrix[np.ix_(self._index, self._index)]))
 
     def _checked(self, name, field):
         values = from_field(field)

@@ -6,10 +6,13 @@ import re
 # What URDF writes as a number: no 'nan', no 'inf', no '1_0', no hexadecimal.
 _NUMBER = re.compile(r'[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?')
 
+# What a limit may be instead, and then counts as none.
+_UNLIMITED = re.compile(r'[+-]?(inf|infinity|nan|1e999)|', re.IGNORECASE)
+
 _INERTIA = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
 
-# Element → (attribute, how many numbers, required). The effort and velocity limits are not
-# here: a URDF without them still has dynamics.
+# Element → (attribute, how many numbers, required). The effort and velocity limits may also
+# be missing, 0 or infinite: a URDF without them still has dynamics.
 _LINK_NUMBERS = {
     'inertial/origin': [('xyz', 3, False), ('rpy', 3, False)],
     'inertial/mass': [('value', 1, True)],
@@ -66,8 +69,19 @@ def number_problems(robot):
             problems += [f'{where}: <inertial> has no <{part.split("/")[1]}>'
                          for part in _INERTIAL_PARTS if link.find(part) is None]
     for joint in robot.findall('joint'):
-        problems += _in_element(joint, f"joint '{joint.get('name')}'", _JOINT_NUMBERS)
+        where = f"joint '{joint.get('name')}'"
+        problems += _in_element(joint, where, _JOINT_NUMBERS)
+        problems += _soft_limits(joint, where)
     return problems
+
+
+def _soft_limits(joint, where):
+    limit = joint.find('limit')
+    given = {} if limit is None else limit.attrib
+    return [f"{where}: <limit> {name}: expected a number, got '{given[name][:60]}'"
+            for name in ('effort', 'velocity')
+            if name in given and not is_number(given[name]) and not _UNLIMITED.fullmatch(
+                given[name].strip())]
 
 
 def _in_element(parent, where, table):

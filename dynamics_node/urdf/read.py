@@ -49,6 +49,9 @@ def read_urdf(source):
     except ElementTree.ParseError as error:  # a prefix that no xmlns declares
         raise RobotDescriptionError([f'it is not XML: {error}; a xacro file must be expanded '
                                      'first']) from error
+    if any('xacro' in element.tag for element in robot.iter()):
+        raise RobotDescriptionError(['it contains xacro elements: expand it first, with '
+                                     '`xacro robot.urdf.xacro > robot.urdf`'])
     _strip(robot)
     problems = structure_problems(robot) + number_problems(robot)
     if problems:
@@ -139,7 +142,8 @@ def _axis(joint, is_missing):
     where = f"joint '{joint.name}': axis"
     if is_missing:
         return axis, [], [f'{where} is missing, (1, 0, 0) is used']
-    length = np.linalg.norm(axis)
+    with np.errstate(over='ignore'):
+        length = np.linalg.norm(axis)
     if not 1e-9 < length < 1e9:
         return axis, [f'{where} has length {length:.3g}, must be a direction'], []
     if abs(length - 1.0) > 1e-6:

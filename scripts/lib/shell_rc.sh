@@ -11,4 +11,6 @@ PS1="(dynamics) ${PS1:-\\w\\$ }"
     source "$dynamics_root/scripts/isolate.sh"
     echo "make demo and make test use ROS_DOMAIN_ID=$ROS_DOMAIN_ID and" \
         "ROS_AUTOMATIC_DISCOVERY_RANGE=$ROS_AUTOMATIC_DISCOVERY_RANGE: export both to see them from here."
+    command -v ros2 >/dev/null ||
+        echo "There is no ros2 command here (it is not on PyPI): python -m dynamics_node.ros.main starts the node."
 )

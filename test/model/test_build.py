@@ -1,10 +1,12 @@
 """The tree of moving bodies: lumping, order, mimic, and where every link went."""
 
+from dynamics_node import RobotDescriptionError
 from dynamics_node.inertia import combine
 from dynamics_node.model import build_tree
 from dynamics_node.urdf import read_urdf
 from dynamics_node.urdf.inertial import link_pseudo_inertia
 import numpy as np
+import pytest
 from support.robots import random_urdf
 
 MASS = ('<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
@@ -84,3 +86,12 @@ def test_a_moving_body_without_mass_is_listed():
 def test_a_long_chain_does_not_meet_the_recursion_limit():
     tree = chain(*[('revolute' if i % 100 == 0 else 'fixed', '') for i in range(999)])
     assert len(tree.body_names) == 10
+
+
+def test_numbers_whose_products_overflow_are_refused():
+    mass = MASS.format('1e308').replace('<mass', '<origin xyz="0 0 1e200"/><mass')
+    text = (f'<robot name="r"><link name="a"/><link name="b">{mass}</link><joint name="j" '
+            'type="revolute"><parent link="a"/><child link="b"/></joint></robot>')
+    with np.errstate(all='ignore'), pytest.raises(
+            RobotDescriptionError, match='inertia behind joint j is not finite'):
+        build_tree(read_urdf(text))

@@ -81,6 +81,17 @@ def test_hold_leaves_the_last_command_in_force():
     assert len(stopped(unit, 1.0)) == 0
     np.testing.assert_array_equal(unit.limiter.last, TORQUE)
     assert unit.machine.name == 'READY'
+    assert 'the last efforts stay in force' in unit.machine.reason
+
+
+def test_enabling_after_hold_starts_from_what_was_held():
+    unit = active(stop_behavior='hold')
+    unit.stop(1.0, 'disabled on request')
+    stopped(unit, 1.0)
+    unit.enable(5.0)
+    np.testing.assert_allclose(unit.on_effort(5.0, TORQUE / 2), TORQUE)
+    np.testing.assert_allclose(unit.on_effort(5.25, TORQUE / 2), 0.75 * TORQUE)
+    np.testing.assert_allclose(unit.on_effort(5.5, TORQUE / 2), TORQUE / 2)
 
 
 def test_a_stale_state_stops_and_latches_with_both_numbers():
@@ -167,7 +178,7 @@ def test_no_sequence_of_events_publishes_what_must_not_be_published(behavior, ev
         command = None
         if event == 'enable':
             if unit.enable(now):
-                last, last_time = np.zeros(2), now
+                last_time = now
         elif event in ('stop', 'fault'):
             unit.stop(now, event, is_fault=event == 'fault')
         elif event == 'limits':

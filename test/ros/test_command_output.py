@@ -6,6 +6,8 @@ import signal
 from dynamics_node import RobotModel
 import numpy as np
 import pytest
+from rcl_interfaces.msg import Parameter, ParameterValue
+from rcl_interfaces.srv import SetParameters
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from support.robots import ARM7, PENDULUM
@@ -163,6 +165,7 @@ def test_a_new_description_is_ignored_while_output_is_on(client, start):
     text = PENDULUM.read_text()
     client.description.publish(String(data=text))
     publish = level(client)
+    client.until(client.output_is('READY'), publish)
     enabled(client, publish)
     heavier = text.replace('<mass value="3"/>', '<mass value="5"/>')
     client.description.publish(String(data=heavier))
@@ -245,3 +248,35 @@ def test_two_broadcasters_at_the_same_moment_do_not_starve_each_other(client, st
     enabled(client, publish)
     client.during(1.0, publish)
     assert client.outputs[-1].name == 'ACTIVE'
+
+
+def test_a_parameter_of_an_unknown_type_does_not_end_the_process(client, start):
+    # rclpy's own parameter service raises on it.
+    process = start(robot_description_file=PENDULUM)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    request = SetParameters.Request(parameters=[
+        Parameter(name='gravity', value=ParameterValue(type=77))])
+    service = client.node.create_client(SetParameters, '/dynamics_node/set_parameters')
+    client.until(service.service_is_ready, publish)
+    service.call_async(request)
+    client.during(0.5, publish)
+    assert process.process.poll() is None
+    assert client.outputs[-1].name == 'ACTIVE'
+    process.send(signal.SIGINT)
+    client.until(lambda: process.process.poll() is not None, publish)
+    code, output = process.wait()
+    assert code == 0
+    assert 'error in rclpy' in output
+    process.expects_traceback = True
+
+
+def test_a_request_to_disable_counts_more_than_enable_on_start(client, start):
+    start(robot_description_file=PENDULUM, enable_on_start='true')
+    client.record_commands()
+    assert client.enable(False).success
+    client.until(client.states.get_subscription_count)
+    client.during(2.5, level(client))
+    assert client.commands == []
+    assert client.outputs[-1].name == 'READY'

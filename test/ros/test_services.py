@@ -103,6 +103,13 @@ def test_refused_requests_say_why_and_answer_empty_arrays(client, start):
             assert not answer.success
             assert reason in answer.message
             assert all(len(array) == 0 for array in arrays(answer).values())
+    for name, kind in KINDS.items():
+        if hasattr(kind.Request(), 'velocity'):
+            answer = client.call(kind, f'/dynamics_node/{name}', kind.Request(
+                position=Q.tolist(), velocity=[1e300] * N))
+            assert not answer.success
+            assert 'the result is not finite' in answer.message
+            assert all(len(array) == 0 for array in arrays(answer).values())
     answer = client.call(GetDynamics, '/dynamics_node/get_dynamics')
     assert np.isnan(answer.kinetic_energy)
     assert np.isnan(answer.potential_energy)

@@ -231,3 +231,18 @@ def test_a_description_comes_from_a_path_with_spaces(tmp_path):
     assert read_urdf(path).name == read_urdf(str(path)).name == 'random'
     with pytest.raises(RobotDescriptionError, match=r'cannot read .*directory'):
         read_urdf(str(tmp_path))
+
+
+def test_what_was_forgotten_to_expand_is_refused():
+    [problem] = problems('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+                         '<xacro:include filename="a"/><link name="a"/></robot>')
+    assert 'contains xacro elements: expand it first' in problem
+    [problem] = problems('<robot name="r"><xacro:include filename="a"/><link name="a"/></robot>')
+    assert 'unbound prefix' in problem
+    [problem] = problems(two_links('<axis xyz="0 0 1"/><limit effort="${e}" velocity="1"/>'))
+    assert problem == "joint 'j': <limit> effort: expected a number, got '${e}'"
+
+
+def test_an_axis_too_long_to_normalise_is_refused():
+    [problem] = problems(two_links('<axis xyz="1e308 1e308 1"/>'))
+    assert problem.startswith("joint 'j': axis has length")

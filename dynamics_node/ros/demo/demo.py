@@ -31,6 +31,9 @@ from .story import Outcome, Story
 
 # [s] A busy desktop computer may stop the simulation for longer than the node's 0.1 s.
 STATE_TIMEOUT = 0.5
+# Relative to the largest entry. MuJoCo keeps orientations as quaternions and the inertia of a
+# link in principal axes, which both round.
+MASS_MATRIX_TOLERANCE = 1e-6
 
 
 def main(args: list[str] | None = None) -> int:
@@ -115,14 +118,29 @@ def _tell(processes: Processes, arm: MujocoArm, hold: float, console: Console) -
         client.wait_until_ready()
         answer = client.mass_matrix()
         size = len(answer.joint_names)
-        print_mass_matrix(console, answer.joint_names,
-                          np.array(answer.mass_matrix).reshape(size, size))
+        matrix = np.array(answer.mass_matrix).reshape(size, size)
+        print_mass_matrix(console, answer.joint_names, matrix)
+        _compare_mass_matrix(answer.joint_names, answer.position, matrix, arm, console)
         _pass_on_warnings(processes, console)
         _note_friction(arm, console)
         story = Story(client, hold, lambda line: console.print(f'• {line}', markup=False))
         return story.tell()
     finally:
         rclpy.try_shutdown()
+
+
+def _compare_mass_matrix(names: list[str], position: list[float], matrix: np.ndarray,
+                         arm: MujocoArm, console: Console) -> None:
+    """Hold the service's matrix, shape (n, n), against MuJoCo's own at the same position."""
+    order = [arm.driven_names.index(name) for name in names]
+    driven = np.zeros(len(order))
+    driven[order] = position
+    expected = arm.mass_matrix(driven)[np.ix_(order, order)]
+    error = float(np.abs(matrix - expected).max() / np.abs(expected).max())
+    if not error < MASS_MATRIX_TOLERANCE:
+        raise DemoError('the mass matrix of the service is not that of MuJoCo: they differ by '
+                        f'{error:.2g} of its largest entry')
+    console.print(f'MuJoCo has the same: it differs by {error:.1g} of the largest entry')
 
 
 def _note_friction(arm: MujocoArm, console: Console) -> None:
