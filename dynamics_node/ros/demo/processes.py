@@ -1,5 +1,6 @@
 """The demo's child processes: started with a log each, and ended whatever happens."""
 
+import os
 from pathlib import Path
 import signal
 import subprocess
@@ -38,10 +39,12 @@ class Processes:
         """Start `python -m module arguments` under a name."""
         with self._log(name).open('wb') as log:
             # A session of its own: Ctrl-C in the terminal must reach the demo alone, which then
-            # ends the processes in the right order.
+            # ends the processes in the right order. Unbuffered: their logs are read while they
+            # run.
             self._running[name] = subprocess.Popen(
                 [sys.executable, '-m', module, *arguments], stdin=subprocess.DEVNULL,
-                stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
+                stdout=log, stderr=subprocess.STDOUT, start_new_session=True,
+                env=dict(os.environ, PYTHONUNBUFFERED='1'))
 
     def check(self) -> None:
         """Raise DemoError if a process has ended by itself."""
