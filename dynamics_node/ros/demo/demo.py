@@ -41,8 +41,9 @@ def main(args: list[str] | None = None) -> int:
     options = _options(remove_ros_args(sys.argv if args is None else args)[1:])
     console = Console(highlight=False, width=None if sys.stdout.isatty() else 100)
     _isolate()
-    # Also when it is terminated or its terminal closes, the demo must end its processes.
-    for number in (signal.SIGTERM, signal.SIGHUP):
+    # Also when it is terminated or its terminal closes, the demo must end its processes; and a
+    # shell that starts it in the background lets it, and so them, ignore SIGINT.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.default_int_handler)
     try:
         return _run(options, console)

@@ -1,11 +1,21 @@
 """Child processes: ended for certain, and their logs shown."""
 
+import signal
+
 from dynamics_node.ros.demo.processes import DemoError, Processes
 import pytest
 
 
+@pytest.fixture(autouse=True)
+def sigint_is_heard():
+    """Restore SIGINT: where the tests run in the background, children would ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def test_processes_end_with_the_context_and_get_ctrl_c_first():
-    """`json.tool` waits for input for ever, which it gets none of; `http.server` serves."""
+    """A server serves for ever, and ends by itself on Ctrl-C."""
     with Processes() as processes:
         processes.start('server', 'http.server', '0', '--bind', '127.0.0.1')
         child = processes._running['server']
