@@ -56,9 +56,6 @@ def build_tree(description):
         links=links,
         limits=_stack([(joint.lower, joint.upper, joint.velocity, joint.effort)
                        for joint in free], (4,)),
-        dynamics=_stack([(joint.damping, joint.friction) for joint in free], (2,)),
-        is_continuous=tuple(joint.kind == 'continuous' for joint in free),
-        is_revolute=tuple(joint.kind != 'prismatic' for joint in free),
         warnings=description.warnings + _massless(moving, inertia),
     )
     _refuse_overflow(tree)

@@ -63,12 +63,6 @@ class KinematicTree:
         Every link of the URDF.
     limits : numpy.ndarray, shape (n, 4)
         Lower, upper (rad or m; infinite if none), velocity, effort (NaN if none) per joint.
-    dynamics : numpy.ndarray, shape (n, 2)
-        Viscous damping and Coulomb friction of each joint.
-    is_continuous : tuple of bool
-        For each of the n joints: whether positions count modulo a full turn.
-    is_revolute : tuple of bool
-        For each of the n joints: True for rad and N m, False for m and N.
     warnings : tuple of str
         What was accepted but looks wrong.
 
@@ -88,9 +82,6 @@ class KinematicTree:
     base_inertia: np.ndarray
     links: dict
     limits: np.ndarray
-    dynamics: np.ndarray
-    is_continuous: tuple
-    is_revolute: tuple
     warnings: tuple
 
     def __post_init__(self):
