@@ -19,7 +19,8 @@ STREET = {
     'output': {'errors'},
     'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'output'},
 }
-LIBRARY = {'numpy', 'numba', 'yourdfpy'}
+# llvmlite is numba's compiler and comes with it.
+LIBRARY = {'numpy', 'numba', 'llvmlite', 'yourdfpy'}
 SOURCES = sorted(PACKAGE.rglob('*.py'))
 
 

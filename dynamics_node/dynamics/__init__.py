@@ -6,6 +6,7 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 """
 
 from .joint_selection import JointSelection
-from .robot_model import DynamicsTerms, RobotModel
+from .robot_model import RobotModel
+from .terms import DynamicsTerms
 
 __all__ = ['DynamicsTerms', 'JointSelection', 'RobotModel']

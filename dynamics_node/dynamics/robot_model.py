@@ -1,37 +1,22 @@
 """`RobotModel`: the dynamics of one robot, for one state or many."""
 
-import math
-from typing import NamedTuple
-
 import numpy as np
 
-from ..errors import ArgumentError, SingularMassMatrixError
-from ..kernels import closed_form
+from .evaluation import Evaluation
+from .specialisation import Specialisation
+from .terms import DynamicsTerms
+from ..errors import ArgumentError
 from ..kernels.packing import pack
+from ..kernels.specialised import make_callable
 from ..model import build_tree
 from ..urdf import read_urdf
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
 
 
-class DynamicsTerms(NamedTuple):
-    """
-    The three terms of D(q) q̈ + C(q, q̇) q̇ + G(q) = τ.
-
-    Attributes
-    ----------
-    mass_matrix : numpy.ndarray, shape (..., n, n)
-        D, kg m² / kg m / kg.
-    coriolis_matrix : numpy.ndarray, shape (..., n, n)
-        C of Christoffel symbols, effort unit per velocity unit.
-    gravity_torque : numpy.ndarray, shape (..., n)
-        G, N m or N.
-
-    """
-
-    mass_matrix: np.ndarray
-    coriolis_matrix: np.ndarray
-    gravity_torque: np.ndarray
+# What machine code for one robot can answer by itself, for one state.
+_QUICK = ('dynamics', 'mass_matrix', 'coriolis_matrix', 'gravity_torque', 'inverse_dynamics',
+          'forward_dynamics')
 
 
 class RobotModel:
@@ -41,12 +26,18 @@ class RobotModel:
     Frozen: another gravity makes another model. Every method takes arrays with leading batch
     axes and may be called from several threads. NaN in a position gives NaN in the answer.
 
+    Large batches are computed by as many threads as the process may use, or by `threads`.
+
+    A robot that is used often gets machine code of its own, compiled in the background and kept
+    on disk; until it is ready, and for large robots, a general kernel answers. The two agree to
+    rounding. See `specialise`.
+
     Revolute joints count in rad, rad/s, N m; prismatic ones in m, m/s, N. The base frame is the
     root link's frame.
 
     """
 
-    def __init__(self, tree, gravity=STANDARD_GRAVITY):
+    def __init__(self, tree, gravity=STANDARD_GRAVITY, *, specialisation=None):
         """
         Make the model of a kinematic tree; most users want `from_urdf`.
 
@@ -55,6 +46,8 @@ class RobotModel:
         tree : KinematicTree
         gravity : array_like, shape (3,)
             Gravity acceleration in the base frame, m/s², points down.
+        specialisation : Specialisation, optional
+            That of another model of the same tree.
 
         Raises
         ------
@@ -65,7 +58,10 @@ class RobotModel:
         self._tree = tree
         self._gravity = _gravity_vector(gravity)
         self._n = len(tree.joint_names)
-        self._packed = pack(tree, self._gravity)
+        packed = pack(tree, self._gravity)
+        self._evaluation = Evaluation(packed, tree.joint_names,
+                                      specialisation or Specialisation(*packed))
+        self._evaluation.specialisation.attach(self)
 
     @classmethod
     def from_urdf(cls, source, gravity=STANDARD_GRAVITY):
@@ -92,6 +88,10 @@ class RobotModel:
 
         """
         return cls(build_tree(read_urdf(source)), gravity)
+
+    def __reduce__(self):
+        # Machine code stays where it is.
+        return type(self), (self._tree, self._gravity)
 
     def __repr__(self):
         return (f'RobotModel({self._n} joints, {self.total_mass:.6g} kg moving, '
@@ -161,9 +161,47 @@ class RobotModel:
             If gravity is not three finite numbers.
 
         """
-        return RobotModel(self._tree, gravity)
+        return RobotModel(self._tree, gravity, specialisation=self._evaluation.specialisation)
 
-    def mass_matrix(self, q):
+    @property
+    def is_specialised(self):
+        """Whether machine code of this robot's own is in use."""
+        return self._evaluation.specialisation.code is not None
+
+    def specialise(self, wait=True):
+        """
+        Ask for machine code of this robot's own, without waiting until it is used often.
+
+        Parameters
+        ----------
+        wait : bool
+            True: return when it is in use, after some seconds if it was never compiled on this
+            machine. False: return at once.
+
+        Returns
+        -------
+        bool
+            Whether it is in use. It never is for robots with very many joints (about 20 in one
+            chain), on Pythons other than CPython, and with DYNAMICS_NODE_SPECIALISE=0.
+
+        """
+        specialisation = self._evaluation.specialisation
+        if wait:
+            return specialisation.wait()
+        specialisation.begin()
+        return self.is_specialised
+
+    def _use(self, code):
+        # Machine code takes the place of methods. What it does not take, it hands to the
+        # evaluation, not to the method: a function that refers to its model would never be freed.
+        for name in _QUICK:
+            if getattr(type(self), name) is getattr(RobotModel, name):
+                fallback = getattr(self._evaluation, name)
+                setattr(self, name, make_callable(
+                    code.loaded, name, fallback, getattr(RobotModel, name).__doc__,
+                    DynamicsTerms, self._gravity))
+
+    def mass_matrix(self, q, *, out=None, threads=None):
         """
         Return the joint-space mass matrix D(q).
 
@@ -171,6 +209,11 @@ class RobotModel:
         ----------
         q : array_like, shape (..., n)
             Joint positions, rad or m.
+        out : numpy.ndarray, optional
+            Where to put the answer: what an earlier call of this shape has returned. Large
+            arrays take longer to make than to fill.
+        threads : int, optional
+            At most so many for a large batch.
 
         Returns
         -------
@@ -187,12 +230,9 @@ class RobotModel:
         docs/mathematics.md, equation (15).
 
         """
-        lead, [q] = self._states(q=q)
-        out = np.empty((len(q), self._n, self._n))
-        closed_form.mass_matrix(*self._packed, q, out)
-        return out.reshape(*lead, self._n, self._n)
+        return self._evaluation.mass_matrix(q, out=out, threads=threads)
 
-    def coriolis_matrix(self, q, qd):
+    def coriolis_matrix(self, q, qd, *, threads=None):
         """
         Return the Coriolis matrix C(q, q̇) of Christoffel symbols: Ḋ = C + Cᵀ.
 
@@ -200,6 +240,8 @@ class RobotModel:
         ----------
         q, qd : array_like, shape (..., n)
             Joint positions (rad or m) and velocities; their batch axes broadcast.
+        threads : int, optional
+            At most so many for a large batch.
 
         Returns
         -------
@@ -216,9 +258,9 @@ class RobotModel:
         docs/mathematics.md, equation (16).
 
         """
-        return self.dynamics(q, qd).coriolis_matrix
+        return self._evaluation.coriolis_matrix(q, qd, threads=threads)
 
-    def gravity_torque(self, q):
+    def gravity_torque(self, q, *, out=None, threads=None):
         """
         Return the gravity torque G(q): the efforts that hold the robot still.
 
@@ -226,6 +268,11 @@ class RobotModel:
         ----------
         q : array_like, shape (..., n)
             Joint positions, rad or m.
+        out : numpy.ndarray, optional
+            Where to put the answer: what an earlier call of this shape has returned. Large
+            arrays take longer to make than to fill.
+        threads : int, optional
+            At most so many for a large batch.
 
         Returns
         -------
@@ -242,7 +289,7 @@ class RobotModel:
         docs/mathematics.md, equation (17).
 
         """
-        return self._gravity_block(q)[..., :-1]
+        return self._evaluation.gravity_torque(q, out=out, threads=threads)
 
     def potential_energy(self, q):
         """
@@ -268,7 +315,7 @@ class RobotModel:
         docs/mathematics.md, equation (20).
 
         """
-        return self._gravity_block(q)[..., -1]
+        return self._evaluation.potential_energy(q)
 
     def kinetic_energy(self, q, qd):
         """
@@ -294,10 +341,9 @@ class RobotModel:
         docs/mathematics.md, equation (20).
 
         """
-        lead, [q, qd] = self._states(q=q, qd=qd)
-        return 0.5 * np.einsum('bi,bij,bj->b', qd, self.mass_matrix(q), qd).reshape(lead)
+        return self._evaluation.kinetic_energy(q, qd)
 
-    def dynamics(self, q, qd):
+    def dynamics(self, q, qd, *, out=None, threads=None):
         """
         Return D, C and G in one pass.
 
@@ -305,6 +351,11 @@ class RobotModel:
         ----------
         q, qd : array_like, shape (..., n)
             Joint positions (rad or m) and velocities; their batch axes broadcast.
+        out : DynamicsTerms, optional
+            Where to put the answer: what an earlier call of this shape has returned. Large
+            arrays take longer to make than to fill.
+        threads : int, optional
+            At most so many for a large batch.
 
         Returns
         -------
@@ -321,15 +372,9 @@ class RobotModel:
         docs/mathematics.md, equations (15) to (17).
 
         """
-        lead, [q, qd] = self._states(q=q, qd=qd)
-        n, nn = self._n, self._n * self._n
-        out = np.empty((len(q), 2 * nn + n + 1))
-        closed_form.dynamics(*self._packed, q, qd, out)
-        return DynamicsTerms(out[:, :nn].reshape(*lead, n, n),
-                             out[:, nn:2 * nn].reshape(*lead, n, n),
-                             out[:, 2 * nn:-1].reshape(*lead, n))
+        return self._evaluation.dynamics(q, qd, out=out, threads=threads)
 
-    def inverse_dynamics(self, q, qd, qdd):
+    def inverse_dynamics(self, q, qd, qdd, *, out=None, threads=None):
         """
         Return the efforts of a motion, τ = D q̈ + C q̇ + G.
 
@@ -337,6 +382,11 @@ class RobotModel:
         ----------
         q, qd, qdd : array_like, shape (..., n)
             Joint positions (rad or m), velocities, accelerations; batch axes broadcast.
+        out : numpy.ndarray, optional
+            Where to put the answer: what an earlier call of this shape has returned. Large
+            arrays take longer to make than to fill.
+        threads : int, optional
+            At most so many for a large batch.
 
         Returns
         -------
@@ -350,14 +400,12 @@ class RobotModel:
 
         References
         ----------
-        docs/mathematics.md, equation (1).
+        docs/mathematics.md, equations (22) and (23).
 
         """
-        lead, [q, qd, qdd] = self._states(q=q, qd=qd, qdd=qdd)
-        D, C, G = self.dynamics(q, qd)
-        return (_times(D, qdd) + _times(C, qd) + G).reshape(*lead, self._n)
+        return self._evaluation.inverse_dynamics(q, qd, qdd, out=out, threads=threads)
 
-    def forward_dynamics(self, q, qd, tau):
+    def forward_dynamics(self, q, qd, tau, *, threads=None):
         """
         Return the accelerations that efforts cause, q̈ = D⁻¹ (τ - C q̇ - G).
 
@@ -367,6 +415,8 @@ class RobotModel:
             Joint positions (rad or m) and velocities.
         tau : array_like, shape (..., n)
             Joint efforts, N m or N; batch axes broadcast.
+        threads : int, optional
+            At most so many for a large batch.
 
         Returns
         -------
@@ -385,50 +435,7 @@ class RobotModel:
         docs/mathematics.md, equation (1), solved by a Cholesky factorisation of D.
 
         """
-        lead, [q, qd, tau] = self._states(q=q, qd=qd, tau=tau)
-        D, C, G = self.dynamics(q, qd)
-        try:
-            L = np.linalg.cholesky(D)
-        except np.linalg.LinAlgError as error:
-            raise SingularMassMatrixError(
-                'the mass matrix is not positive definite, expected inertia behind every joint: '
-                'check the <inertial> of the moving links') from error
-        half = np.linalg.solve(L, (tau - _times(C, qd) - G)[..., None])
-        return np.linalg.solve(L.swapaxes(-1, -2), half).reshape(*lead, self._n)
-
-    def _gravity_block(self, q):
-        lead, [q] = self._states(q=q)
-        out = np.empty((len(q), self._n + 1))
-        closed_form.gravity_torque(*self._packed, q, out)
-        return out.reshape(*lead, self._n + 1)
-
-    def _states(self, **values):
-        # The batch axes, and each argument with shape (B, n). Always fresh C-ordered arrays:
-        # numba compiles read-only or strided ones as a type of their own, and nobody should
-        # wait for the compiler in the middle of a control loop.
-        arrays = [np.array(value, dtype=float, order='C') for value in values.values()]
-        for name, array in zip(values, arrays, strict=True):
-            if array.shape[-1:] != (self._n,):
-                raise ArgumentError(f'{name}: expected shape (..., {self._n}) for joints '
-                                    f'{list(self.joint_names)}, got {array.shape}')
-        if any(array.shape != arrays[0].shape for array in arrays):
-            arrays = self._broadcast(values, arrays)
-        lead = arrays[0].shape[:-1]
-        count = math.prod(lead)
-        return lead, [array.reshape(count, self._n) for array in arrays]
-
-    @staticmethod
-    def _broadcast(names, arrays):
-        try:
-            return [np.array(array, order='C') for array in np.broadcast_arrays(*arrays)]
-        except ValueError as error:
-            shapes = ', '.join(f'{name} {array.shape}'
-                               for name, array in zip(names, arrays, strict=True))
-            raise ArgumentError(f'expected batch axes that fit, got {shapes}') from error
-
-
-def _times(matrix, vector):
-    return np.einsum('bij,bj->bi', matrix, vector)
+        return self._evaluation.forward_dynamics(q, qd, tau, threads=threads)
 
 
 def _gravity_vector(value):

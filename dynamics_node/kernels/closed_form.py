@@ -1,28 +1,29 @@
 """
-The closed form: D, C and G in two sweeps over the tree. Compiled.
+The closed form: D, C and G in two sweeps over the tree.
 
 Equation numbers are those of docs/mathematics.md, section 4. They hold in every frame at rest;
 here each joint has one of its own, with the axes of the base and its origin on the joint. So a
 light finger far from the base keeps all its digits. What passes from one joint to another is
 moved by the offset between them, equation (21).
 
-Every 4x4 matrix has few different numbers, and only those are kept:
+Every 4x4 matrix has few different numbers, and only those are kept, one row per body:
 
-    pose          = (rotation, row-major; origin; offset)   body → base; offset: from the parent
-    twist     xi  = (wx wy wz vx vy vz)                     of the joint
-    composite Jc  = (m, hx hy hz, xx xy xz yy yz zz)        symmetric 4x4
-    momentum  Lc  = (xx xy xz yx yy yz zx zy zz, x y z)     3x4: left 3x3 block, last column
+    pose      = (rotation, row-major; origin; offset)   body → base; offset: from the parent
+    twist     = (wx wy wz vx vy vz)                     xi, of the joint; velocity V likewise
+    composite = (m, hx hy hz, xx xy xz yy yz zz)        Jc, symmetric 4x4
+    momentum  = (xx xy xz yx yy yz zx zy zz, x y z)     Lc, 3x4: left 3x3 block, last column
 
-All functions of one file, because numba's cache on disk does not notice a change in a callee
-that lives in another file.
+The formulas are written once, in plain arithmetic, and run in three ways: compiled for every
+robot at once (the four functions at the top), interpreted, and on symbols, which turns them into
+straight-line code for one robot (`specialised`). So a formula may not ask what a number is.
+
+All of it is one file, because numba's cache on disk does not notice a change in another one.
 
 """
 
-import math
-
 import numpy as np
 
-from .jit import compiled
+from .jit import compiled, formula
 from .packing import (
     AXIS,
     COORDINATE,
@@ -31,16 +32,24 @@ from .packing import (
     MULTIPLIER,
     OFFSET,
     PARENT,
+    ROTATION,
     TRANSLATION,
 )
+
+# Columns of the arrays above.
+OF_ROTATION, OF_ORIGIN, OF_OFFSET = 0, 9, 12
+POSE, TWIST, COMPOSITE, MOMENTUM = 15, 6, 10, 12
 
 _PRISMATIC = 1
 
 
+# For every robot, B states at once ---------------------------------------------------------
+
+
 @compiled
-def dynamics(structure, numbers, q, qd, out):
+def dynamics(structure, numbers, q, qd, D, C, G):
     """
-    Compute D, C, G and the potential energy of B states.
+    Compute D, C and G of B states.
 
     Parameters
     ----------
@@ -48,27 +57,20 @@ def dynamics(structure, numbers, q, qd, out):
         See `packing.pack`.
     q, qd : numpy.ndarray, shape (B, n)
         Joint positions (rad or m) and velocities.
-    out : numpy.ndarray, shape (B, 2 n² + n + 1)
-        Overwritten: D row-major, C row-major, G, V.
+    D, C : numpy.ndarray, shape (B, n, n)
+        Overwritten.
+    G : numpy.ndarray, shape (B, n)
+        Overwritten.
 
     """
-    bodies, n = structure.shape[0], q.shape[1]
-    pose, twist, composite = _workspace(bodies)
-    twist_rate = np.empty((bodies, 6))
-    momentum = np.empty((bodies, 12))
-    for state in range(q.shape[0]):
-        row = out[state]
-        row[:] = 0.0
-        outward(structure, numbers, q[state], pose, twist, composite)
-        _outward_velocity(structure, numbers, qd[state], pose, twist, composite, twist_rate,
-                          momentum)
-        _inward_dynamics(structure, numbers, pose, twist, composite, twist_rate, momentum,
-                         row[:n * n].reshape(n, n), row[n * n:2 * n * n].reshape(n, n))
-        _gravity_from_composites(structure, numbers, pose, twist, composite, row[2 * n * n:])
+    work = workspace(structure.shape[0])
+    D[:], C[:], G[:] = 0.0, 0.0, 0.0
+    for b in range(q.shape[0]):
+        dynamics_of_state(structure, numbers, q[b], qd[b], work, D[b], C[b], G[b])
 
 
 @compiled
-def mass_matrix(structure, numbers, q, out):
+def mass_matrix(structure, numbers, q, D):
     """
     Compute D of B states.
 
@@ -77,19 +79,18 @@ def mass_matrix(structure, numbers, q, out):
     structure, numbers : numpy.ndarray
         See `packing.pack`.
     q : numpy.ndarray, shape (B, n)
-    out : numpy.ndarray, shape (B, n, n)
+    D : numpy.ndarray, shape (B, n, n)
         Overwritten.
 
     """
-    pose, twist, composite = _workspace(structure.shape[0])
-    for state in range(q.shape[0]):
-        out[state] = 0.0
-        outward(structure, numbers, q[state], pose, twist, composite)
-        _inward_mass(structure, numbers, pose, twist, composite, out[state])
+    work = workspace(structure.shape[0])
+    D[:] = 0.0
+    for b in range(q.shape[0]):
+        mass_matrix_of_state(structure, numbers, q[b], work, D[b])
 
 
 @compiled
-def gravity_torque(structure, numbers, q, out):
+def gravity_torque(structure, numbers, q, G, V):
     """
     Compute G and the potential energy of B states.
 
@@ -98,24 +99,93 @@ def gravity_torque(structure, numbers, q, out):
     structure, numbers : numpy.ndarray
         See `packing.pack`.
     q : numpy.ndarray, shape (B, n)
-    out : numpy.ndarray, shape (B, n + 1)
-        Overwritten: G, V.
+    G : numpy.ndarray, shape (B, n)
+        Overwritten.
+    V : numpy.ndarray, shape (B,)
+        Overwritten.
 
     """
-    pose, twist, composite = _workspace(structure.shape[0])
-    for state in range(q.shape[0]):
-        out[state] = 0.0
-        outward(structure, numbers, q[state], pose, twist, composite)
-        _inward_composites(structure, pose, composite)
-        _gravity_from_composites(structure, numbers, pose, twist, composite, out[state])
+    work = workspace(structure.shape[0])
+    G[:] = 0.0
+    for b in range(q.shape[0]):
+        V[b] = gravity_of_state(structure, numbers, q[b], work, G[b])
 
 
 @compiled
-def _workspace(bodies):
-    return np.empty((bodies, 15)), np.empty((bodies, 6)), np.empty((bodies, 10))
+def inverse_dynamics(structure, numbers, q, qd, qdd, tau):
+    """
+    Compute the efforts of B motions.
+
+    Parameters
+    ----------
+    structure, numbers : numpy.ndarray
+        See `packing.pack`.
+    q, qd, qdd : numpy.ndarray, shape (B, n)
+        Joint positions (rad or m), velocities, accelerations.
+    tau : numpy.ndarray, shape (B, n)
+        Overwritten.
+
+    """
+    work = workspace(structure.shape[0])
+    tau[:] = 0.0
+    for b in range(q.shape[0]):
+        inverse_dynamics_of_state(structure, numbers, q[b], qd[b], qdd[b], work, tau[b])
 
 
-@compiled
+# One state ---------------------------------------------------------------------------------
+
+
+@formula
+def workspace(bodies):
+    """Return what the functions of one state need to work in: one array per quantity."""
+    return (np.empty((bodies, POSE)), np.empty((bodies, TWIST)), np.empty((bodies, COMPOSITE)),
+            np.empty((bodies, TWIST)), np.empty((bodies, TWIST)), np.empty((bodies, MOMENTUM)))
+
+
+@formula
+def dynamics_of_state(structure, numbers, q, qd, work, D, C, G):
+    """Add D, C and G of one state to zeros, equations (15) to (17)."""
+    pose, twist, composite, velocity, twist_rate, momentum = work
+    outward(structure, numbers, q, pose, twist, composite)
+    outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate)
+    momenta(structure, velocity, composite, momentum)
+    inward_dynamics(structure, numbers, pose, twist, twist_rate, composite, momentum, D, C)
+    gravity_torques(structure, numbers, twist, composite, G)
+
+
+@formula
+def mass_matrix_of_state(structure, numbers, q, work, D):
+    """Add D of one state to zeros, equation (15)."""
+    pose, twist, composite = work[:3]
+    outward(structure, numbers, q, pose, twist, composite)
+    inward_mass(structure, numbers, pose, twist, composite, D)
+
+
+@formula
+def gravity_of_state(structure, numbers, q, work, G):
+    """Add G of one state to zeros, equation (17), and return V, equation (20)."""
+    pose, twist, composite = work[:3]
+    outward(structure, numbers, q, pose, twist, composite)
+    inward_composites(structure, pose, composite)
+    gravity_torques(structure, numbers, twist, composite, G)
+    return potential_energy(structure, numbers, pose, composite)
+
+
+@formula
+def inverse_dynamics_of_state(structure, numbers, q, qd, qdd, work, tau):
+    """Add the efforts of one motion to zeros, equation (22)."""
+    pose, twist, K, velocity, twist_rate, scratch = work
+    acceleration, wrench = scratch[:, :TWIST], scratch[:, TWIST:]
+    outward(structure, numbers, q, pose, twist, K)
+    outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate)
+    outward_acceleration(structure, numbers, qd, qdd, pose, twist, twist_rate, acceleration)
+    inward_efforts(structure, numbers, pose, twist, velocity, acceleration, K, wrench, tau)
+
+
+# From the base to the tips -----------------------------------------------------------------
+
+
+@formula
 def outward(structure, numbers, q, pose, twist, composite):
     """
     Walk from the base to the tips: pose A_k, twist xi_k, pseudo-inertia K_k of every body.
@@ -135,271 +205,474 @@ def outward(structure, numbers, q, pose, twist, composite):
 
     """
     for k in range(structure.shape[0]):
-        row = numbers[k]
-        position = row[MULTIPLIER] * q[structure[k, COORDINATE]] + row[OFFSET]
-        _joint_frame(structure[k, PARENT], row, pose, pose[k])
-        _joint_twist(structure[k, KIND], row, pose[k], twist[k])
-        _move(structure[k, KIND], row, position, twist[k], pose[k])
-        _pseudo_inertia_in_base(row, pose[k], composite[k])
-
-
-@compiled
-def _joint_frame(parent, row, pose, here):
-    # A_parent X_k: the joint frame at position 0, in the base frame.
-    if parent < 0:
-        here[:12] = row[:12]
-        here[12:] = row[9:12]
-        return
-    up = pose[parent]
-    for i in range(3):
-        a, b, c = up[3 * i], up[3 * i + 1], up[3 * i + 2]
-        for j in range(3):
-            here[3 * i + j] = a * row[j] + b * row[3 + j] + c * row[6 + j]
-        here[12 + i] = (a * row[TRANSLATION] + b * row[TRANSLATION + 1]
-                        + c * row[TRANSLATION + 2])
-        here[9 + i] = up[9 + i] + here[12 + i]
-
-
-@compiled
-def _joint_twist(kind, row, here, xi):
-    # (9) with the origin on the joint: revolute w = axis, v = 0; prismatic w = 0, v = axis. The
-    # axis does not turn with the joint's own position, so the frame at position 0 will do.
-    ax, ay, az = row[AXIS], row[AXIS + 1], row[AXIS + 2]
-    first = 3 if kind == _PRISMATIC else 0
-    xi[:] = 0.0
-    for i in range(3):
-        xi[first + i] = here[3 * i] * ax + here[3 * i + 1] * ay + here[3 * i + 2] * az
-
-
-@compiled
-def _move(kind, row, position, xi, here):
-    # A_k = A_parent X_k E(position): slide along the axis, or turn by Rodrigues' formula.
-    if kind == _PRISMATIC:
-        for i in range(3):
-            here[9 + i] += position * xi[3 + i]
-            here[12 + i] += position * xi[3 + i]
-        return
-    s, c = math.sin(position), math.cos(position)
-    ax, ay, az = row[AXIS], row[AXIS + 1], row[AXIS + 2]
-    for i in range(3):
-        x, y, z = here[3 * i], here[3 * i + 1], here[3 * i + 2]
-        along = (1.0 - c) * (x * ax + y * ay + z * az)
-        here[3 * i] = c * x + s * (y * az - z * ay) + along * ax
-        here[3 * i + 1] = c * y + s * (z * ax - x * az) + along * ay
-        here[3 * i + 2] = c * z + s * (x * ay - y * ax) + along * az
-
-
-@compiled
-def _pseudo_inertia_in_base(row, here, K):
-    # (10): K = A J Aᵀ in the axes of the base, with the origin on the joint: R Sigma Rᵀ, R h, m.
-    hx, hy, hz = row[INERTIA + 1], row[INERTIA + 2], row[INERTIA + 3]
-    xx, xy, xz = row[INERTIA + 4], row[INERTIA + 5], row[INERTIA + 6]
-    yy, yz, zz = row[INERTIA + 7], row[INERTIA + 8], row[INERTIA + 9]
-    K[0] = row[INERTIA]
-    entry = 4
-    for i in range(3):
-        a, b, c = here[3 * i], here[3 * i + 1], here[3 * i + 2]
-        K[1 + i] = a * hx + b * hy + c * hz
-        u, v, w = a * xx + b * xy + c * xz, a * xy + b * yy + c * yz, a * xz + b * yz + c * zz
-        for j in range(i, 3):
-            K[entry] = u * here[3 * j] + v * here[3 * j + 1] + w * here[3 * j + 2]
-            entry += 1
-
-
-@compiled
-def _outward_velocity(structure, numbers, qd, pose, twist, K, twist_rate, momentum):
-    # (11) V_k = V_parent + xi_k qd_k, (14) rate of xi_k, and V_k K_k, the summand of (13). The
-    # parent's twist is moved to this joint first, (21).
-    velocity = np.empty((structure.shape[0], 6))
-    for k in range(structure.shape[0]):
-        V, xi = velocity[k], twist[k]
-        speed = numbers[k, MULTIPLIER] * qd[structure[k, COORDINATE]]
-        parent = structure[k, PARENT]
-        for i in range(6):
-            V[i] = xi[i] * speed
+        parent, prismatic = structure[k, PARENT], structure[k, KIND] == _PRISMATIC
+        position = numbers[k, MULTIPLIER] * q[structure[k, COORDINATE]] + numbers[k, OFFSET]
+        axis = _vector(numbers, k, AXIS)
+        R, offset = _matrix(numbers, k, ROTATION), _vector(numbers, k, TRANSLATION)
+        if not prismatic:
+            R = _product(R, _turn(axis, np.sin(position), np.cos(position)))
         if parent >= 0:
-            up = velocity[parent]
-            x, y, z = _cross(up[0], up[1], up[2], pose[k, 12], pose[k, 13], pose[k, 14])
-            V[0] += up[0]
-            V[1] += up[1]
-            V[2] += up[2]
-            V[3] += up[3] + x
-            V[4] += up[4] + y
-            V[5] += up[5] + z
-        _commutator(V, xi, twist_rate[k])
-        _momentum(V, K[k], momentum[k])
+            up = _matrix(pose, parent, OF_ROTATION)
+            R, offset = _product(up, R), _times(up, offset)
+        # A turn leaves its own axis alone, so the frame after the turn will do for (9).
+        u = _times(R, axis)
+        if prismatic:
+            offset = _add(offset, _scale(position, u))
+        origin = offset
+        if parent >= 0:
+            origin = _add(_vector(pose, parent, OF_ORIGIN), offset)
+        _put_matrix(pose, k, OF_ROTATION, R)
+        _put(pose, k, OF_ORIGIN, origin)
+        _put(pose, k, OF_OFFSET, offset)
+        _put_twist(twist, k, prismatic, u)
+        _pseudo_inertia_in_base(numbers, k, R, composite)
 
 
-@compiled
-def _commutator(V, xi, rate):
-    # (14): V xi - xi V. Rotation W x w; translation W x v - w x U, with V = (W, U).
-    rate[0], rate[1], rate[2] = _cross(V[0], V[1], V[2], xi[0], xi[1], xi[2])
-    x, y, z = _cross(V[0], V[1], V[2], xi[3], xi[4], xi[5])
-    u, v, w = _cross(xi[0], xi[1], xi[2], V[3], V[4], V[5])
-    rate[3], rate[4], rate[5] = x - u, y - v, z - w
+@formula
+def _turn(a, s, c):
+    # Rodrigues: E = a aᵀ + cos (1 - a aᵀ) + sin [a]×
+    x, y, z = a
+    xy, xz, yz = x * y, x * z, y * z
+    return (x * x + c * (1.0 - x * x), xy - c * xy - s * z, xz - c * xz + s * y,
+            xy - c * xy + s * z, y * y + c * (1.0 - y * y), yz - c * yz - s * x,
+            xz - c * xz - s * y, yz - c * yz + s * x, z * z + c * (1.0 - z * z))
 
 
-@compiled
-def _momentum(V, K, L):
-    # V K = [W]x Sigma + U hᵀ in the left block, W x h + m U in the last column.
-    m, hx, hy, hz = K[0], K[1], K[2], K[3]
-    xx, xy, xz, yy, yz, zz = K[4], K[5], K[6], K[7], K[8], K[9]
-    a, b, c = _cross(V[0], V[1], V[2], xx, xy, xz)
-    L[0], L[3], L[6] = a + V[3] * hx, b + V[4] * hx, c + V[5] * hx
-    a, b, c = _cross(V[0], V[1], V[2], xy, yy, yz)
-    L[1], L[4], L[7] = a + V[3] * hy, b + V[4] * hy, c + V[5] * hy
-    a, b, c = _cross(V[0], V[1], V[2], xz, yz, zz)
-    L[2], L[5], L[8] = a + V[3] * hz, b + V[4] * hz, c + V[5] * hz
-    a, b, c = _cross(V[0], V[1], V[2], hx, hy, hz)
-    L[9], L[10], L[11] = a + m * V[3], b + m * V[4], c + m * V[5]
+@formula
+def _put_twist(twist, k, prismatic, u):
+    # (9) with the origin on the joint: revolute w = axis, v = 0; prismatic w = 0, v = axis.
+    if prismatic:
+        _put(twist, k, 0, (0.0, 0.0, 0.0))
+        _put(twist, k, 3, u)
+    else:
+        _put(twist, k, 0, u)
+        _put(twist, k, 3, (0.0, 0.0, 0.0))
 
 
-@compiled
-def _inward_composites(structure, pose, composite):
-    # (12): Jc_j = sum of K over the subtree of j, from the tips inward.
+@formula
+def _pseudo_inertia_in_base(numbers, k, R, K):
+    # (10): K = A J Aᵀ in the axes of the base, with the origin on the joint: R Sigma Rᵀ, R h, m.
+    x, y, z = (R[0], R[1], R[2]), (R[3], R[4], R[5]), (R[6], R[7], R[8])
+    sigma = _second_moments(numbers, k, INERTIA + 4)
+    sx, sy, sz = _times(sigma, x), _times(sigma, y), _times(sigma, z)
+    K[k, 0] = numbers[k, INERTIA]
+    _put(K, k, 1, _times(R, _vector(numbers, k, INERTIA + 1)))
+    _put(K, k, 4, (_dot(x, sx), _dot(y, sx), _dot(z, sx)))
+    _put(K, k, 7, (_dot(y, sy), _dot(z, sy), _dot(z, sz)))
+
+
+@formula
+def outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate):
+    """
+    Walk from the base to the tips: velocity V_k and the rate of every joint's twist.
+
+    Parameters
+    ----------
+    structure, numbers : numpy.ndarray
+        See `packing.pack`.
+    qd : numpy.ndarray, shape (n,)
+    pose, twist : numpy.ndarray
+        As `outward` leaves them.
+    velocity : numpy.ndarray, shape (N, 6)
+        Overwritten: equation (11).
+    twist_rate : numpy.ndarray, shape (N, 6)
+        Overwritten: equation (14).
+
+    """
+    for k in range(structure.shape[0]):
+        parent = structure[k, PARENT]
+        speed = numbers[k, MULTIPLIER] * qd[structure[k, COORDINATE]]
+        w, v = _vector(twist, k, 0), _vector(twist, k, 3)
+        W, U = _scale(speed, w), _scale(speed, v)
+        if parent >= 0:
+            # (11) V_k = V_parent + xi_k qd_k, the parent's moved to this joint by (21).
+            up = _vector(velocity, parent, 0)
+            moved = _add(_vector(velocity, parent, 3), _cross(up, _vector(pose, k, OF_OFFSET)))
+            W, U = _add(up, W), _add(moved, U)
+        _put(velocity, k, 0, W)
+        _put(velocity, k, 3, U)
+        # (14) V xi - xi V: rotation W x w; translation W x v - w x U.
+        _put(twist_rate, k, 0, _cross(W, w))
+        _put(twist_rate, k, 3, _subtract(_cross(W, v), _cross(w, U)))
+
+
+@formula
+def momenta(structure, velocity, K, momentum):
+    """
+    Compute V_k K_k of every body, the summand of (13).
+
+    Parameters
+    ----------
+    structure : numpy.ndarray
+        See `packing.pack`.
+    velocity : numpy.ndarray, shape (N, 6)
+        As `outward_velocity` leaves it.
+    K : numpy.ndarray, shape (N, 10)
+        As `outward` leaves it.
+    momentum : numpy.ndarray, shape (N, 12)
+        Overwritten.
+
+    """
+    for k in range(structure.shape[0]):
+        # V K = [W]× Sigma + U hᵀ in the left block, W x h + m U in the last column.
+        W, U = _vector(velocity, k, 0), _vector(velocity, k, 3)
+        h, sigma = _vector(K, k, 1), _second_moments(K, k, 4)
+        x = _add(_cross(W, (sigma[0], sigma[3], sigma[6])), _scale(h[0], U))
+        y = _add(_cross(W, (sigma[1], sigma[4], sigma[7])), _scale(h[1], U))
+        z = _add(_cross(W, (sigma[2], sigma[5], sigma[8])), _scale(h[2], U))
+        _put_matrix(momentum, k, 0, _transposed((*x, *y, *z)))
+        _put(momentum, k, 9, _add(_cross(W, h), _scale(K[k, 0], U)))
+
+
+# From the tips to the base -----------------------------------------------------------------
+
+
+@formula
+def inward_composites(structure, pose, composite):
+    """
+    Sum K over the subtree of every joint, equation (12).
+
+    Parameters
+    ----------
+    structure : numpy.ndarray
+        See `packing.pack`.
+    pose : numpy.ndarray, shape (N, 15)
+    composite : numpy.ndarray, shape (N, 10)
+        K_k before, Jc_k after.
+
+    """
     for j in range(structure.shape[0] - 1, -1, -1):
         if structure[j, PARENT] >= 0:
-            _add_composite(composite[j], pose[j], composite[structure[j, PARENT]])
+            _add_composite(pose, composite, j, structure[j, PARENT])
 
 
-@compiled
-def _add_composite(Jc, here, up):
-    # (12) and (21): the parent's composite gains this one, moved by the offset d.
-    # h + m d and Sigma + h dᵀ + d hᵀ + m d dᵀ.
-    m = Jc[0]
-    up[0] += m
-    entry = 4
-    for i in range(3):
-        d = here[12 + i]
-        up[1 + i] += Jc[1 + i] + m * d
-        for j in range(i, 3):
-            up[entry] += (Jc[entry] + Jc[1 + i] * here[12 + j] + d * Jc[1 + j]
-                          + m * d * here[12 + j])
-            entry += 1
+@formula
+def _add_composite(pose, Jc, j, parent):
+    # (12) and (21), with the offset d: h + m d and Sigma + h dᵀ + d hᵀ + m d dᵀ.
+    m, h, d = Jc[j, 0], _vector(Jc, j, 1), _vector(pose, j, OF_OFFSET)
+    moved = _add(h, _scale(m, d))
+    Jc[parent, 0] += m
+    _accumulate(Jc, parent, 1, moved)
+    _accumulate(Jc, parent, 4, (Jc[j, 4] + h[0] * d[0] + d[0] * moved[0],
+                                Jc[j, 5] + h[0] * d[1] + d[0] * moved[1],
+                                Jc[j, 6] + h[0] * d[2] + d[0] * moved[2]))
+    _accumulate(Jc, parent, 7, (Jc[j, 7] + h[1] * d[1] + d[1] * moved[1],
+                                Jc[j, 8] + h[1] * d[2] + d[1] * moved[2],
+                                Jc[j, 9] + h[2] * d[2] + d[2] * moved[2]))
 
 
-@compiled
-def _add_momentum(Lc, here, up):
+@formula
+def _add_momentum(pose, Lc, j, parent):
     # (13) and (21): L + l dᵀ in the left block, l in the last column.
-    for i in range(3):
-        for j in range(3):
-            up[3 * i + j] += Lc[3 * i + j] + Lc[9 + i] * here[12 + j]
-        up[9 + i] += Lc[9 + i]
+    l, d = _vector(Lc, j, 9), _vector(pose, j, OF_OFFSET)  # noqa: E741 (the formula's symbol)
+    _accumulate(Lc, parent, 0, _add(_vector(Lc, j, 0), _scale(l[0], d)))
+    _accumulate(Lc, parent, 3, _add(_vector(Lc, j, 3), _scale(l[1], d)))
+    _accumulate(Lc, parent, 6, _add(_vector(Lc, j, 6), _scale(l[2], d)))
+    _accumulate(Lc, parent, 9, l)
 
 
-@compiled
-def _inward_mass(structure, numbers, pose, twist, composite, D):
-    force = np.empty(6)
+@formula
+def inward_mass(structure, numbers, pose, twist, Jc, D):
+    """
+    Add up D from the tips to the base, equations (12) and (15).
+
+    Parameters
+    ----------
+    structure, numbers, pose, twist : numpy.ndarray
+        As `outward` leaves them.
+    Jc : numpy.ndarray, shape (N, 10)
+        K_k before, Jc_k after.
+    D : numpy.ndarray, shape (n, n)
+        Zero before.
+
+    """
     for j in range(structure.shape[0] - 1, -1, -1):
         if structure[j, PARENT] >= 0:
-            _add_composite(composite[j], pose[j], composite[structure[j, PARENT]])
-        _force(twist[j], composite[j], force)
+            _add_composite(pose, Jc, j, structure[j, PARENT])
+        torque, force = _force(Jc, j, _vector(twist, j, 0), _vector(twist, j, 3))
         cj, mj = structure[j, COORDINATE], numbers[j, MULTIPLIER]
-        l = j  # noqa: E741 (the symbol of the formula)
-        while l >= 0:
-            cl, ml = structure[l, COORDINATE], numbers[l, MULTIPLIER]
-            entry = ml * mj * _dot(twist[l], force)          # (15), (19)
-            D[cl, cj] += entry
-            if l != j:
-                D[cj, cl] += entry
-            _to_parent(pose[l], force)
-            l = structure[l, PARENT]  # noqa: E741
+        i = j
+        while i >= 0:
+            ci, scale = structure[i, COORDINATE], numbers[i, MULTIPLIER] * mj    # (19)
+            entry = scale * _trace(twist, i, torque, force)                      # (15)
+            D[ci, cj] += entry
+            if i != j:
+                D[cj, ci] += entry
+            torque = _moved(pose, i, torque, force)
+            i = structure[i, PARENT]
 
 
-@compiled
-def _inward_dynamics(structure, numbers, pose, twist, composite, twist_rate, momentum, D, C):
-    force, rate_force, transposed = np.empty(6), np.empty(6), np.empty(3)
+@formula
+def inward_dynamics(structure, numbers, pose, twist, twist_rate, Jc, Lc, D, C):
+    """
+    Add up D and C from the tips to the base, equations (12), (13), (15) and (16).
+
+    Parameters
+    ----------
+    structure, numbers, pose, twist, twist_rate : numpy.ndarray
+        As `outward` and `outward_velocity` leave them.
+    Jc : numpy.ndarray, shape (N, 10)
+        K_k before, Jc_k after.
+    Lc : numpy.ndarray, shape (N, 12)
+        V_k K_k before, Lc_k after.
+    D, C : numpy.ndarray, shape (n, n)
+        Zero before.
+
+    """
     for j in range(structure.shape[0] - 1, -1, -1):
         parent = structure[j, PARENT]
         if parent >= 0:
-            _add_composite(composite[j], pose[j], composite[parent])
-            _add_momentum(momentum[j], pose[j], momentum[parent])
-        _force(twist[j], composite[j], force)
-        _force(twist_rate[j], composite[j], rate_force)
-        _momentum_force(twist[j], momentum[j], rate_force, transposed)
+            _add_composite(pose, Jc, j, parent)
+            _add_momentum(pose, Lc, j, parent)
+        w, v = _vector(twist, j, 0), _vector(twist, j, 3)
+        torque, force = _force(Jc, j, w, v)
+        # The six numbers of (rate of xi) Jc + xi Lc, and the axial part of xi Lcᵀ.
+        torque2, force2 = _force(Jc, j, _vector(twist_rate, j, 0), _vector(twist_rate, j, 3))
+        L, l = _matrix(Lc, j, 0), _vector(Lc, j, 9)  # noqa: E741 (the formula's symbol)
+        trace_w = _scale(L[0] + L[4] + L[8], w)
+        torque2 = _add(torque2, _subtract(trace_w, _times(L, w)))
+        force2 = _add(force2, _cross(w, l))
+        mirrored = _add(_subtract(trace_w, _times(_transposed(L), w)), _cross(l, v))
         cj, mj = structure[j, COORDINATE], numbers[j, MULTIPLIER]
-        l = j  # noqa: E741 (the symbol of the formula)
-        while l >= 0:
-            cl, ml = structure[l, COORDINATE], numbers[l, MULTIPLIER]
-            xi, scale = twist[l], ml * mj                    # (19)
-            entry = scale * _dot(xi, force)                  # (15)
-            D[cl, cj] += entry
-            C[cl, cj] += scale * _dot(xi, rate_force)        # (16), l above j
-            if l != j:
-                D[cj, cl] += entry
-                C[cj, cl] += scale * (                       # (16), l below j: swapped names
-                    _dot(twist_rate[l], force)
-                    + xi[0] * transposed[0] + xi[1] * transposed[1] + xi[2] * transposed[2])
-            _to_parent(pose[l], force)
-            _to_parent(pose[l], rate_force)
-            l = structure[l, PARENT]  # noqa: E741
+        i = j
+        while i >= 0:
+            ci, scale = structure[i, COORDINATE], numbers[i, MULTIPLIER] * mj    # (19)
+            entry = scale * _trace(twist, i, torque, force)                      # (15)
+            D[ci, cj] += entry
+            C[ci, cj] += scale * _trace(twist, i, torque2, force2)               # (16), i above j
+            if i != j:
+                D[cj, ci] += entry
+                C[cj, ci] += scale * (_trace(twist_rate, i, torque, force)       # (16), i below j:
+                                      + _dot(_vector(twist, i, 0), mirrored))    # swapped names
+            torque = _moved(pose, i, torque, force)
+            torque2 = _moved(pose, i, torque2, force2)
+            i = structure[i, PARENT]
 
 
-@compiled
-def _to_parent(here, force):
-    # (21): the axial part gains d x (last column).
-    x, y, z = _cross(here[12], here[13], here[14], force[3], force[4], force[5])
-    force[0] += x
-    force[1] += y
-    force[2] += z
-
-
-@compiled
-def _force(xi, Jc, force):
+@formula
+def _force(Jc, j, w, v):
     # The six numbers of xi Jc that (18) needs: axial part tr(Sigma) w - Sigma w + h x v,
     # last column w x h + m v.
-    m, hx, hy, hz = Jc[0], Jc[1], Jc[2], Jc[3]
-    xx, xy, xz, yy, yz, zz = Jc[4], Jc[5], Jc[6], Jc[7], Jc[8], Jc[9]
-    wx, wy, wz, vx, vy, vz = xi[0], xi[1], xi[2], xi[3], xi[4], xi[5]
-    a, b, c = _cross(hx, hy, hz, vx, vy, vz)
-    force[0] = (yy + zz) * wx - xy * wy - xz * wz + a
-    force[1] = (xx + zz) * wy - xy * wx - yz * wz + b
-    force[2] = (xx + yy) * wz - xz * wx - yz * wy + c
-    a, b, c = _cross(wx, wy, wz, hx, hy, hz)
-    force[3], force[4], force[5] = a + m * vx, b + m * vy, c + m * vz
+    h, sigma = _vector(Jc, j, 1), _second_moments(Jc, j, 4)
+    return _add(_axial(sigma, w), _cross(h, v)), _add(_cross(w, h), _scale(Jc[j, 0], v))
 
 
-@compiled
-def _momentum_force(xi, L, rate_force, transposed):
-    # xi Lc, added to the force of the twist's rate: axial part tr(L) w - L w, column w x l;
-    # and the axial part of xi Lcᵀ for the mirrored entry: tr(L) w - Lᵀ w + l x v.
-    wx, wy, wz = xi[0], xi[1], xi[2]
-    trace = L[0] + L[4] + L[8]
-    rate_force[0] += trace * wx - L[0] * wx - L[1] * wy - L[2] * wz
-    rate_force[1] += trace * wy - L[3] * wx - L[4] * wy - L[5] * wz
-    rate_force[2] += trace * wz - L[6] * wx - L[7] * wy - L[8] * wz
-    a, b, c = _cross(wx, wy, wz, L[9], L[10], L[11])
-    rate_force[3] += a
-    rate_force[4] += b
-    rate_force[5] += c
-    a, b, c = _cross(L[9], L[10], L[11], xi[3], xi[4], xi[5])
-    transposed[0] = trace * wx - L[0] * wx - L[3] * wy - L[6] * wz + a
-    transposed[1] = trace * wy - L[1] * wx - L[4] * wy - L[7] * wz + b
-    transposed[2] = trace * wz - L[2] * wx - L[5] * wy - L[8] * wz + c
+@formula
+def _axial(sigma, w):
+    # (18): axial([w]× Sigma) = tr(Sigma) w - Sigma w, for a symmetric Sigma, without the
+    # differences.
+    return ((sigma[4] + sigma[8]) * w[0] - sigma[1] * w[1] - sigma[2] * w[2],
+            (sigma[0] + sigma[8]) * w[1] - sigma[1] * w[0] - sigma[5] * w[2],
+            (sigma[0] + sigma[4]) * w[2] - sigma[2] * w[0] - sigma[5] * w[1])
 
 
-@compiled
-def _gravity_from_composites(structure, numbers, pose, twist, Jc, out):
-    # (17): G_l = -g · (w x h + m v), the last column of xi Jc; and V = -g · (h + m p) of (20).
-    bodies, n = structure.shape[0], out.shape[0] - 1
-    gx, gy, gz = numbers[bodies, 0], numbers[bodies, 1], numbers[bodies, 2]
-    for k in range(bodies):
-        m, hx, hy, hz = Jc[k, 0], Jc[k, 1], Jc[k, 2], Jc[k, 3]
-        a, b, c = _cross(twist[k, 0], twist[k, 1], twist[k, 2], hx, hy, hz)
-        pull = (gx * (a + m * twist[k, 3]) + gy * (b + m * twist[k, 4])
-                + gz * (c + m * twist[k, 5]))
-        out[structure[k, COORDINATE]] -= numbers[k, MULTIPLIER] * pull
+@formula
+def _trace(twist, i, torque, force):
+    # (18): tr(B xiᵀ) = w · axial(B) + v · b.
+    return _dot(_vector(twist, i, 0), torque) + _dot(_vector(twist, i, 3), force)
+
+
+@formula
+def _moved(pose, i, torque, force):
+    # (21), from joint i to its parent: the axial part gains d x (last column).
+    return _add(torque, _cross(_vector(pose, i, OF_OFFSET), force))
+
+
+@formula
+def gravity_torques(structure, numbers, twist, Jc, G):
+    """
+    Add up G_l = -g · (w x h + m v), equation (17): the last column of xi Jc.
+
+    Parameters
+    ----------
+    structure, numbers, twist : numpy.ndarray
+        As `outward` leaves them; gravity is the last row of `numbers`.
+    Jc : numpy.ndarray, shape (N, 10)
+        Composites.
+    G : numpy.ndarray, shape (n,)
+        Zero before.
+
+    """
+    gravity = _vector(numbers, structure.shape[0], 0)
+    for k in range(structure.shape[0]):
+        column = _add(_cross(_vector(twist, k, 0), _vector(Jc, k, 1)),
+                      _scale(Jc[k, 0], _vector(twist, k, 3)))
+        G[structure[k, COORDINATE]] -= numbers[k, MULTIPLIER] * _dot(gravity, column)
+
+
+@formula
+def potential_energy(structure, numbers, pose, Jc):
+    """
+    Return V = -g · (h + m p) of the whole tree, equation (20).
+
+    Parameters
+    ----------
+    structure, numbers, pose : numpy.ndarray
+        As `outward` leaves them; gravity is the last row of `numbers`.
+    Jc : numpy.ndarray, shape (N, 10)
+        Composites.
+
+    Returns
+    -------
+    float
+        J.
+
+    """
+    energy = 0.0
+    for k in range(structure.shape[0]):
         if structure[k, PARENT] < 0:
-            out[n] -= (gx * (hx + m * pose[k, 9]) + gy * (hy + m * pose[k, 10])
-                       + gz * (hz + m * pose[k, 11]))
+            first_moment = _add(_vector(Jc, k, 1), _scale(Jc[k, 0], _vector(pose, k, OF_ORIGIN)))
+            energy = energy - _dot(_vector(numbers, structure.shape[0], 0), first_moment)
+    return energy
 
 
-@compiled
-def _cross(ax, ay, az, bx, by, bz):
-    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+# Efforts of a motion, without matrices -----------------------------------------------------
 
 
-@compiled
+@formula
+def outward_acceleration(structure, numbers, qd, qdd, pose, twist, twist_rate, acceleration):
+    """
+    Walk from the base to the tips: the rate of V_k, in a world that accelerates by -g.
+
+    Parameters
+    ----------
+    structure, numbers, pose, twist, twist_rate : numpy.ndarray
+        As `outward` and `outward_velocity` leave them; gravity is the last row of `numbers`.
+    qd, qdd : numpy.ndarray, shape (n,)
+    acceleration : numpy.ndarray, shape (N, 6)
+        Overwritten: equation (23).
+
+    """
+    for k in range(structure.shape[0]):
+        parent, multiplier = structure[k, PARENT], numbers[k, MULTIPLIER]
+        speed = multiplier * qd[structure[k, COORDINATE]]
+        change = multiplier * qdd[structure[k, COORDINATE]]
+        if parent >= 0:
+            up = _vector(acceleration, parent, 0)
+            moved = _add(_vector(acceleration, parent, 3),
+                         _cross(up, _vector(pose, k, OF_OFFSET)))
+        else:
+            up = (0.0, 0.0, 0.0)
+            moved = _scale(-1.0, _vector(numbers, structure.shape[0], 0))
+        _put(acceleration, k, 0, _add(up, _add(_scale(change, _vector(twist, k, 0)),
+                                               _scale(speed, _vector(twist_rate, k, 0)))))
+        _put(acceleration, k, 3, _add(moved, _add(_scale(change, _vector(twist, k, 3)),
+                                                  _scale(speed, _vector(twist_rate, k, 3)))))
+
+
+@formula
+def inward_efforts(structure, numbers, pose, twist, velocity, acceleration, K, wrench, tau):
+    """
+    Add up the efforts of a motion from the tips to the base, equation (22).
+
+    Parameters
+    ----------
+    structure, numbers, pose, twist, velocity, acceleration, K : numpy.ndarray
+        As the outward walks leave them.
+    wrench : numpy.ndarray, shape (N, 6)
+        Overwritten: axial part and last column of the sum of (V' + V V) K over the subtree.
+    tau : numpy.ndarray, shape (n,)
+        Zero before.
+
+    """
+    for k in range(structure.shape[0]):
+        W, U = _vector(velocity, k, 0), _vector(velocity, k, 3)
+        h, sigma = _vector(K, k, 1), _second_moments(K, k, 4)
+        a = _vector(acceleration, k, 0)
+        c = _add(_vector(acceleration, k, 3), _cross(W, U))
+        # Left block of V' + V V: [a]× + [W]×[W]×, last column c. Hence by (18):
+        _put(wrench, k, 0, _add(_axial(sigma, a),
+                                _add(_cross(_times(sigma, W), W), _cross(h, c))))
+        _put(wrench, k, 3, _add(_add(_cross(a, h), _cross(W, _cross(W, h))),
+                                _scale(K[k, 0], c)))
+    for j in range(structure.shape[0] - 1, -1, -1):
+        torque, force = _vector(wrench, j, 0), _vector(wrench, j, 3)
+        effort = numbers[j, MULTIPLIER] * _trace(twist, j, torque, force)
+        tau[structure[j, COORDINATE]] += effort
+        if structure[j, PARENT] >= 0:
+            _accumulate(wrench, structure[j, PARENT], 0, _moved(pose, j, torque, force))
+            _accumulate(wrench, structure[j, PARENT], 3, force)
+
+
+# Vectors of three numbers and matrices of nine ---------------------------------------------
+
+
+@formula
+def _vector(array, row, column):
+    return array[row, column], array[row, column + 1], array[row, column + 2]
+
+
+@formula
+def _matrix(array, row, column):
+    return (array[row, column], array[row, column + 1], array[row, column + 2],
+            array[row, column + 3], array[row, column + 4], array[row, column + 5],
+            array[row, column + 6], array[row, column + 7], array[row, column + 8])
+
+
+@formula
+def _second_moments(array, row, column):
+    xx, xy, xz = _vector(array, row, column)
+    yy, yz, zz = _vector(array, row, column + 3)
+    return xx, xy, xz, xy, yy, yz, xz, yz, zz
+
+
+@formula
+def _put(array, row, column, a):
+    array[row, column], array[row, column + 1], array[row, column + 2] = a
+
+
+@formula
+def _put_matrix(array, row, column, A):
+    _put(array, row, column, (A[0], A[1], A[2]))
+    _put(array, row, column + 3, (A[3], A[4], A[5]))
+    _put(array, row, column + 6, (A[6], A[7], A[8]))
+
+
+@formula
+def _accumulate(array, row, column, a):
+    array[row, column] += a[0]
+    array[row, column + 1] += a[1]
+    array[row, column + 2] += a[2]
+
+
+@formula
+def _add(a, b):
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+@formula
+def _subtract(a, b):
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@formula
+def _scale(factor, a):
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
+@formula
 def _dot(a, b):
-    # (18)
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@formula
+def _cross(a, b):
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@formula
+def _times(A, b):
+    return (A[0] * b[0] + A[1] * b[1] + A[2] * b[2],
+            A[3] * b[0] + A[4] * b[1] + A[5] * b[2],
+            A[6] * b[0] + A[7] * b[1] + A[8] * b[2])
+
+
+@formula
+def _product(A, B):
+    x, y, z = (B[0], B[3], B[6]), (B[1], B[4], B[7]), (B[2], B[5], B[8])
+    return _transposed((*_times(A, x), *_times(A, y), *_times(A, z)))
+
+
+@formula
+def _transposed(A):
+    return A[0], A[3], A[6], A[1], A[4], A[7], A[2], A[5], A[8]

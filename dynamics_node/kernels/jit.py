@@ -3,6 +3,7 @@
 from typing import Any
 
 import numba
+from numba.extending import register_jitable
 
 # fastmath stays off: it may assume that there is no NaN, and the checks for NaN live on it.
 # error_model 'numpy' follows IEEE 754 on division instead of raising in compiled code.
@@ -20,3 +21,8 @@ def compiled(function):
         return numba.njit(cache=True, **_OPTIONS)(function)
     except RuntimeError:  # numba: no locator available
         return numba.njit(**_OPTIONS)(function)
+
+
+def formula(function):
+    """Let kernels call a function when they are compiled; called from Python, it stays Python."""
+    return register_jitable(**_OPTIONS)(function)

@@ -42,7 +42,10 @@ def pack(tree, gravity):
     structure[:, COORDINATE] = tree.coordinate
     numbers = np.zeros((count + 1, WIDTH))
     body = numbers[:count]
-    body[:, ROTATION:TRANSLATION] = tree.placement[:, :3, :3].reshape(count, 9)
+    rotation = tree.placement[:, :3, :3].reshape(count, 9)
+    # What is lost beside 1 by rounding is zero: rpy="1.5707963267948966 0 0" means a right angle,
+    # though the cosine of that number is 6e-17.
+    body[:, ROTATION:TRANSLATION] = np.where(np.abs(rotation) < 2.0**-53, 0.0, rotation)
     body[:, TRANSLATION:AXIS] = tree.placement[:, :3, 3]
     body[:, AXIS:INERTIA] = tree.axis
     body[:, INERTIA:MULTIPLIER] = ten_numbers(tree.inertia)

@@ -18,9 +18,11 @@ def warm_up():
     # As `pack` hands them over: numba compiles read-only arrays as a type of their own.
     structure.flags.writeable = numbers.flags.writeable = False
     q = np.zeros((1, 1))
-    closed_form.dynamics(structure, numbers, q, q, np.empty((1, 4)))
-    closed_form.mass_matrix(structure, numbers, q, np.empty((1, 1, 1)))
-    closed_form.gravity_torque(structure, numbers, q, np.empty((1, 2)))
+    matrix, vector = np.empty((1, 1, 1)), np.empty((1, 1))
+    closed_form.dynamics(structure, numbers, q, q, matrix, matrix, vector)
+    closed_form.mass_matrix(structure, numbers, q, matrix)
+    closed_form.gravity_torque(structure, numbers, q, vector, np.empty(1))
+    closed_form.inverse_dynamics(structure, numbers, q, q, q, vector)
 
 
 if __name__ == '__main__':

@@ -1,0 +1,214 @@
+"""Arrays in, arrays out: checks, batches, threads, and which kernel computes."""
+
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+import math
+import os
+
+import numpy as np
+
+from .terms import DynamicsTerms
+from ..errors import ArgumentError, SingularMassMatrixError
+from ..kernels import closed_form
+from ..kernels.specialised import are_ordinary
+
+# States that one thread computes in one go: enough to make the call cheap, few enough to stay in
+# its cache. Only batches of several such pieces are worth a second thread.
+_PIECE = 1024
+
+_FLOAT = np.dtype(np.float64)
+
+
+class Evaluation:
+    """
+    The dynamics of one robot under one gravity, for checked arrays.
+
+    Attributes
+    ----------
+    packed : tuple of numpy.ndarray
+        See `kernels.packing.pack`.
+    specialisation : Specialisation
+        Machine code for this robot, if there is any.
+
+    """
+
+    def __init__(self, packed, joint_names, specialisation):
+        """
+        Belong to a robot.
+
+        Parameters
+        ----------
+        packed : tuple of numpy.ndarray
+            See `kernels.packing.pack`.
+        joint_names : tuple of str
+            Of the n joints.
+        specialisation : Specialisation
+
+        """
+        self.packed = packed
+        self.specialisation = specialisation
+        self._gravity = packed[1][-1, :3].copy()
+        self._joint_names = joint_names
+        self._n = len(joint_names)
+
+    def states(self, **values):
+        """
+        Check and broadcast arrays of joint values.
+
+        Parameters
+        ----------
+        **values : array_like, shape (..., n)
+
+        Returns
+        -------
+        lead : tuple of int
+            The batch axes.
+        arrays : list of numpy.ndarray, shape (B, n)
+            Contiguous, float64, B the product of the batch axes.
+
+        Raises
+        ------
+        ArgumentError
+            If a last axis is not n or batch axes do not fit.
+
+        """
+        arrays = [_plain(value) for value in values.values()]
+        for name, array in zip(values, arrays, strict=True):
+            if array.shape[-1:] != (self._n,):
+                raise ArgumentError(f'{name}: expected shape (..., {self._n}) for joints '
+                                    f'{list(self._joint_names)}, got {array.shape}')
+        lead = arrays[0].shape[:-1]
+        if any(array.shape[:-1] != lead for array in arrays):
+            arrays = _broadcast(values, arrays)
+            lead = arrays[0].shape[:-1]
+        count = math.prod(lead)
+        return lead, [array.reshape(count, self._n) for array in arrays]
+
+    def dynamics(self, q, qd, *, out=None, threads=None):
+        """Return D, C and G, each with the batch axes of q and qd first."""
+        n = self._n
+        lead, arrays = self.states(q=q, qd=qd)
+        shapes = (n, n), (n, n), (n,)
+        return DynamicsTerms(*self._run('dynamics', closed_form.dynamics, lead, ('q', 'qd'),
+                                        arrays, shapes, out, threads))
+
+    def coriolis_matrix(self, q, qd, *, threads=None):
+        """Return C with the batch axes of q and qd first."""
+        return self.dynamics(q, qd, threads=threads).coriolis_matrix
+
+    def mass_matrix(self, q, *, out=None, threads=None):
+        """Return D with the batch axes of q first."""
+        lead, arrays = self.states(q=q)
+        return self._run('mass_matrix', closed_form.mass_matrix, lead, ('q',), arrays,
+                         ((self._n, self._n),), _one(out), threads)[0]
+
+    def gravity_torque(self, q, *, out=None, threads=None):
+        """Return G with the batch axes of q first."""
+        lead, arrays = self.states(q=q)
+        return self._run('gravity_torque', _gravity_torque, lead, ('q',), arrays, ((self._n,),),
+                         _one(out), threads)[0]
+
+    def inverse_dynamics(self, q, qd, qdd, *, out=None, threads=None):
+        """Return the efforts of a motion with the batch axes of its arguments first."""
+        lead, arrays = self.states(q=q, qd=qd, qdd=qdd)
+        return self._run('inverse_dynamics', closed_form.inverse_dynamics, lead,
+                         ('q', 'qd', 'qdd'), arrays, ((self._n,),), _one(out), threads)[0]
+
+    def forward_dynamics(self, q, qd, tau, *, threads=None):
+        """Return the accelerations that efforts cause, by a Cholesky factorisation of D."""
+        lead, [q, qd, tau] = self.states(q=q, qd=qd, tau=tau)
+        bias = self.inverse_dynamics(q, qd, np.zeros_like(q), threads=threads)
+        try:
+            L = np.linalg.cholesky(self.mass_matrix(q, threads=threads))
+        except np.linalg.LinAlgError as error:
+            raise SingularMassMatrixError(
+                'the mass matrix is not positive definite, expected inertia behind every joint: '
+                'check the <inertial> of the moving links') from error
+        half = np.linalg.solve(L, (tau - bias)[..., None])
+        return np.linalg.solve(L.swapaxes(-1, -2), half).reshape(*lead, self._n)
+
+    def kinetic_energy(self, q, qd):
+        """Return T with the batch axes of q and qd."""
+        lead, [q, qd] = self.states(q=q, qd=qd)
+        return 0.5 * np.einsum('bi,bij,bj->b', qd, self.mass_matrix(q), qd).reshape(lead)
+
+    def potential_energy(self, q):
+        """Return V with the batch axes of q."""
+        lead, [q] = self.states(q=q)
+        G, V = np.empty((len(q), self._n)), np.empty(len(q))
+        closed_form.gravity_torque(*self.packed, q, G, V)
+        return V.reshape(lead)
+
+    def _run(self, name, kernel, lead, inputs, arrays, shapes, out, threads):
+        count = len(arrays[0])
+        results = [np.empty((*lead, *shape)) for shape in shapes] if out is None else list(out)
+        if out is not None:
+            _check_out(results, [(*lead, *shape) for shape in shapes])
+        outputs = [result.reshape(count, *shape)
+                   for result, shape in zip(results, shapes, strict=True)]
+        code = self.specialisation.code
+        if code is None:
+            self.specialisation.count(count)
+
+        def piece(begin, end):
+            mine = [array[begin:end] for array in arrays]
+            answers = [output[begin:end] for output in outputs]
+            if (code is not None and end - begin >= code.lanes
+                    and are_ordinary(mine, inputs)):
+                code.batch(name, self._gravity, mine, answers)
+            else:
+                kernel(*self.packed, *mine, *answers)
+
+        _in_pieces(piece, count, threads)
+        return results
+
+
+def _gravity_torque(structure, numbers, q, G):
+    closed_form.gravity_torque(structure, numbers, q, G, np.empty(len(q)))
+
+
+def _in_pieces(piece, count, threads):
+    # Calls piece(begin, end) for all of 0..count, in pieces of about equal size.
+    pieces = max(1, math.ceil(count / _PIECE))
+    if threads is None:
+        threads = len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else 1
+    threads = min(threads, pieces)
+    bounds = [count * i // pieces for i in range(pieces + 1)]
+    if threads <= 1:
+        for begin, end in pairwise(bounds):
+            piece(begin, end)
+        return
+    with ThreadPoolExecutor(threads) as pool:
+        for _ in pool.map(piece, bounds[:-1], bounds[1:]):
+            pass
+
+
+def _one(out):
+    return None if out is None else (out,)
+
+
+def _check_out(arrays, shapes):
+    for array in arrays:
+        if not (type(array) is np.ndarray and array.dtype is _FLOAT and array.flags.carray):
+            raise ArgumentError('out: expected writeable, contiguous float64 arrays, got '
+                                f'{type(array).__name__}; take what an earlier call has returned')
+    if [array.shape for array in arrays] != shapes:
+        raise ArgumentError(f'out: expected shapes {shapes}, '
+                            f'got {[array.shape for array in arrays]}')
+
+
+def _plain(value):
+    # numba compiles read-only or strided arrays as a type of their own, and nobody should wait
+    # for the compiler in the middle of a control loop. So all but plain ones are copied.
+    if type(value) is np.ndarray and value.dtype is _FLOAT and value.flags.carray:
+        return value
+    return np.array(value, dtype=float, order='C')
+
+
+def _broadcast(names, arrays):
+    try:
+        return [np.array(array, order='C') for array in np.broadcast_arrays(*arrays)]
+    except ValueError as error:
+        shapes = ', '.join(f'{name} {array.shape}'
+                           for name, array in zip(names, arrays, strict=True))
+        raise ArgumentError(f'expected batch axes that fit, got {shapes}') from error

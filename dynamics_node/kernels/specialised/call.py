@@ -1,0 +1,300 @@
+"""
+The way in from Python: builtin functions that call machine code of one robot directly.
+
+For one state of a small arm, the arithmetic takes less time than Python's and numba's way of
+handing over five arrays. So each quantity gets an entry of its own, in the same machine code: it
+looks at the arguments, makes the arrays of the answer and computes, in one step. It takes the
+plain case only: positional arrays of float64, contiguous, of shape (n,), with finite numbers.
+Everything else (lists, batches, keywords, wrong shapes, NaN) goes to a Python function, which
+knows how to convert and what to say.
+
+The entry reads the arguments as numpy and CPython lay them out in memory (`PyArrayObject` and
+`PyMethodDef`, both public and unchanged for many years). `is_supported` looks whether it is so.
+
+"""
+
+import ctypes
+import functools
+import inspect
+import sys
+import sysconfig
+
+import numpy as np
+
+from .code import Code
+from .sine import LARGEST_ANGLE
+
+# Bytes from the begin of an object to the field.
+_TYPE = 8
+_DATA, _DIMENSION_COUNT, _DIMENSIONS, _DESCRIPTION, _FLAGS = 16, 24, 32, 56, 64
+_CONTIGUOUS_AND_ALIGNED = 0x101
+_FLOAT64 = 12                   # NPY_DOUBLE
+_METHOD_FLAGS = 0x80 | 0x02     # METH_FASTCALL | METH_KEYWORDS
+_PYARRAY_NEW = 93               # Place in numpy's table of C functions.
+
+# What is larger is left to the general kernel, with NaN and infinity.
+LARGEST_NUMBER = 1e100
+
+# Slots of the context, 8 bytes each: addresses of Python's and numpy's objects and functions.
+_SLOTS = ('fallback', 'array_type', 'float64', 'terms_type', 'new_array', 'new_object',
+          'set_item', 'release', 'call')
+_GRAVITY = len(_SLOTS)
+
+
+def entry_function(quantity):
+    """
+    Return the LLVM function that Python calls.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        One output becomes an array, more become a tuple of the context's `terms_type`.
+
+    Returns
+    -------
+    str
+
+    """
+    entry = _Entry(quantity)
+    entry.check_arguments()
+    entry.make_arrays()
+    entry.compute()
+    entry.answer()
+    entry.fall_back()
+    return '\n'.join([
+        f'define ptr @{quantity.name}_call(ptr %self, ptr %arguments, i64 %count, ptr %keywords) '
+        '{', 'entry:', *entry.code.lines, '}'])
+
+
+class _Entry:
+    # Writes the entry of one quantity, part after part.
+
+    def __init__(self, quantity):
+        self.code = Code()
+        self.quantity = quantity
+        self.arrays = []
+        self.data = []
+        self._labels = 0
+        # Room on the stack is taken first, so that it is taken once.
+        self.shapes = [self.code.line(f'alloca [{output.ndim} x i64]')
+                       for output in quantity.outputs]
+        self.context = self.load('ptr', '%self', _DATA)
+
+    def load(self, kind, pointer, offset):
+        address = self.code.line(f'getelementptr i8, ptr {pointer}, i64 {offset}')
+        return self.code.line(f'load {kind}, ptr {address}')
+
+    def slot(self, name):
+        return self.load('ptr', self.context, 8 * _SLOTS.index(name))
+
+    def label(self):
+        self._labels += 1
+        return f'step{self._labels}'
+
+    def demand(self, condition, otherwise='slow'):
+        # Goes on only if a condition holds.
+        label = self.label()
+        self.code.do(f'br i1 {condition}, label %{label}, label %{otherwise}')
+        self.code.lines.append(f'{label}:')
+
+    def all_of(self, conditions):
+        return functools.reduce(lambda a, b: self.code.line(f'and i1 {a}, {b}'), conditions)
+
+    def equal(self, kind, a, b):
+        return self.code.line(f'icmp eq {kind} {a}, {b}')
+
+    def check_arguments(self):
+        quantity = self.quantity
+        self.demand(self.all_of([
+            self.equal('i64', '%count', len(quantity.inputs)),
+            self.equal('ptr', '%keywords', 'null')]))
+        array_type, float64 = self.slot('array_type'), self.slot('float64')
+        for index in range(len(quantity.inputs)):
+            argument = self.load('ptr', '%arguments', 8 * index)
+            self.demand(self.equal('ptr', self.load('ptr', argument, _TYPE), array_type))
+            flags = self.code.line(
+                f'and i32 {self.load("i32", argument, _FLAGS)}, {_CONTIGUOUS_AND_ALIGNED}')
+            self.demand(self.all_of([
+                self.equal('ptr', self.load('ptr', argument, _DESCRIPTION), float64),
+                self.equal('i32', self.load('i32', argument, _DIMENSION_COUNT), 1),
+                self.equal('i32', flags, _CONTIGUOUS_AND_ALIGNED)]))
+            length = self.load('i64', self.load('ptr', argument, _DIMENSIONS), 0)
+            self.demand(self.equal('i64', length, quantity.joint_count))
+            self.data.append(self.load('ptr', argument, _DATA))
+        self.demand(self.all_of([self._is_ordinary(name, data) for name, data
+                                 in zip(quantity.inputs, self.data, strict=True)]))
+
+    def _is_ordinary(self, name, data):
+        # A comparison with NaN does not hold either.
+        code, bound = self.code, LARGEST_ANGLE if name == 'q' else LARGEST_NUMBER
+        conditions = []
+        for index in range(self.quantity.joint_count):
+            number = self.load('double', data, 8 * index)
+            size = code.line(f'call double @llvm.fabs.f64(double {number})')
+            conditions.append(code.line(f'fcmp olt double {size}, {code.constant(bound)}'))
+        return self.all_of(conditions)
+
+    def make_arrays(self):
+        code = self.code
+        array_type, new_array = self.slot('array_type'), self.slot('new_array')
+        for shape, output in zip(self.shapes, self.quantity.outputs, strict=True):
+            for axis, length in enumerate(output.shape):
+                code.do(f'store i64 {length}, ptr {code.address(shape, axis)}')
+            array = code.line(
+                f'call ptr {new_array}(ptr {array_type}, i32 {output.ndim}, ptr {shape}, '
+                f'i32 {_FLOAT64}, ptr null, ptr null, i32 0, i32 0, ptr null)')
+            failed, made = self.label(), self.label()
+            code.do(f'br i1 {self.equal("ptr", array, "null")}, label %{failed}, label %{made}')
+            code.lines.append(f'{failed}:')
+            self.release()
+            code.do('ret ptr null')
+            code.lines.append(f'{made}:')
+            self.arrays.append(array)
+
+    def release(self):
+        release = self.slot('release')
+        for array in self.arrays:
+            self.code.do(f'call void {release}(ptr {array})')
+
+    def compute(self):
+        code = self.code
+        gravity = code.line(f'getelementptr i8, ptr {self.context}, i64 {8 * _GRAVITY}')
+        out = [self.load('ptr', array, _DATA) for array in self.arrays]
+        arguments = ', '.join(f'ptr {pointer}' for pointer in [*self.data, gravity, *out])
+        sound = code.line(f'call i1 @{self.quantity.name}({arguments})')
+        if self.quantity.positive:
+            unsound, go_on = self.label(), self.label()
+            code.do(f'br i1 {sound}, label %{go_on}, label %{unsound}')
+            code.lines.append(f'{unsound}:')
+            self.release()
+            code.do('br label %slow')
+            code.lines.append(f'{go_on}:')
+
+    def answer(self):
+        code = self.code
+        if len(self.arrays) == 1:
+            code.do(f'ret ptr {self.arrays[0]}')
+            return
+        new_object, set_item = self.slot('new_object'), self.slot('set_item')
+        terms = code.line(f'call ptr {new_object}(ptr {self.slot("terms_type")}, '
+                          f'i64 {len(self.arrays)})')
+        failed, made = self.label(), self.label()
+        code.do(f'br i1 {self.equal("ptr", terms, "null")}, label %{failed}, label %{made}')
+        code.lines.append(f'{failed}:')
+        self.release()
+        code.do('ret ptr null')
+        code.lines.append(f'{made}:')
+        for index, array in enumerate(self.arrays):
+            code.line(f'call i32 {set_item}(ptr {terms}, i64 {index}, ptr {array})')
+        code.do(f'ret ptr {terms}')
+
+    def fall_back(self):
+        code = self.code
+        code.lines.append('slow:')
+        call, function = self.slot('call'), self.slot('fallback')
+        result = code.line(f'call ptr {call}(ptr {function}, ptr %arguments, i64 %count, '
+                           'ptr %keywords)')
+        code.do(f'ret ptr {result}')
+
+
+DECLARATIONS = 'declare double @llvm.fabs.f64(double)'
+
+
+class _MethodDefinition(ctypes.Structure):
+    # PyMethodDef
+    _fields_ = (('name', ctypes.c_char_p), ('function', ctypes.c_void_p),
+                ('flags', ctypes.c_int), ('documentation', ctypes.c_char_p))
+
+
+class _Context(np.ndarray):
+    # What an entry finds behind `self`. `owned` keeps alive what the slots point to.
+
+    owned: tuple
+
+    def __new__(cls, values):
+        return np.array(values, dtype=np.int64).view(cls)
+
+
+def make_callable(code, name, fallback, documentation, terms_type, gravity):
+    """
+    Return a builtin function that computes a quantity of one state.
+
+    Parameters
+    ----------
+    code : LoadedCode
+        With the entry of this quantity.
+    name : str
+    fallback : callable
+        Takes over what the entry does not take. It must not refer to the new function: Python
+        would not find that circle.
+    documentation : str
+        Docstring.
+    terms_type : type
+        A named tuple for the answers of more than one output.
+    gravity : numpy.ndarray, shape (3,)
+        m/s², base frame.
+
+    Returns
+    -------
+    builtin_function_or_method
+
+    """
+    api = ctypes.pythonapi
+    addresses = {
+        'fallback': id(fallback), 'array_type': id(np.ndarray),
+        'float64': id(np.dtype(np.float64)), 'terms_type': id(terms_type),
+        'new_array': _numpy_function(_PYARRAY_NEW),
+        'new_object': _address(api.PyType_GenericAlloc),
+        'set_item': _address(api.PyTuple_SetItem), 'release': _address(api.Py_DecRef),
+        'call': _address(api.PyObject_Vectorcall)}
+    bits = np.array(gravity, dtype=np.float64).view(np.int64)
+    context = _Context([*(addresses[slot] for slot in _SLOTS), *bits.tolist()])
+    text = f'{name}{inspect.signature(fallback)}\n--\n\n{inspect.cleandoc(documentation)}'
+    method = _MethodDefinition(name.encode(), code.address(f'{name}_call'), _METHOD_FLAGS,
+                               text.encode())
+    context.owned = (code, method, fallback, terms_type)
+    new = api.PyCFunction_NewEx
+    new.argtypes = [ctypes.POINTER(_MethodDefinition), ctypes.py_object, ctypes.py_object]
+    new.restype = ctypes.py_object
+    return new(ctypes.byref(method), context, 'dynamics_node')
+
+
+def _address(function):
+    return ctypes.cast(function, ctypes.c_void_p).value
+
+
+def _numpy_function(place):
+    core = getattr(np, '_core', None) or np.core
+    pointer = ctypes.pythonapi.PyCapsule_GetPointer
+    pointer.argtypes, pointer.restype = [ctypes.py_object, ctypes.c_char_p], ctypes.c_void_p
+    table = pointer(core._multiarray_umath._ARRAY_API, None)
+    return ctypes.c_void_p.from_address(table + 8 * place).value
+
+
+@functools.cache
+def is_supported():
+    """
+    Look whether objects lie in memory as the entries expect.
+
+    Returns
+    -------
+    bool
+        False on another Python than CPython, one without its global lock, or a 32-bit one.
+
+    """
+    if (sys.implementation.name != 'cpython' or ctypes.sizeof(ctypes.c_void_p) != 8
+            or sysconfig.get_config_var('Py_GIL_DISABLED')):
+        return False
+    probe = np.arange(3.0)
+    at = id(probe)
+    address = functools.partial(_read, ctypes.c_void_p, at)
+    return (address(_TYPE) == id(np.ndarray) and address(_DATA) == probe.ctypes.data
+            and _read(ctypes.c_int, at, _DIMENSION_COUNT) == 1
+            and _read(ctypes.c_int64, address(_DIMENSIONS), 0) == 3
+            and address(_DESCRIPTION) == id(np.dtype(np.float64))
+            and _read(ctypes.c_int, at, _FLAGS) & _CONTIGUOUS_AND_ALIGNED
+            == _CONTIGUOUS_AND_ALIGNED)
+
+
+def _read(kind, at, offset):
+    return kind.from_address(at + offset).value

@@ -1,0 +1,159 @@
+"""
+LLVM functions that compute a quantity: of one state, and of many.
+
+    i1 NAME(q, ..., gravity, out...)                one state; false: the results mean nothing
+    void NAME_batch(q, ..., gravity, out..., B)     B >= lanes states, row after row
+
+All arguments but B are addresses of doubles.
+
+"""
+
+from .code import append_program, Code
+
+
+def state_function(quantity):
+    """
+    Return the LLVM function of one state.
+
+    Parameters
+    ----------
+    quantity : Quantity
+
+    Returns
+    -------
+    str
+
+    """
+    code = Code()
+
+    def load(name, index):
+        return code.line(f'load double, ptr {code.address("%" + name, index)}')
+
+    name = append_program(code, quantity, load)
+    for place, output in enumerate(quantity.outputs):
+        for index, value in enumerate(output.flat):
+            code.do(f'store double {name(value)}, ptr {code.address(f"%out{place}", index)}')
+    sound = 'true'
+    for value in quantity.positive:
+        positive = code.line(f'fcmp ogt double {name(value)}, {code.constant(0.0)}')
+        sound = code.line(f'and i1 {sound}, {positive}')
+    code.do(f'ret i1 {sound}')
+    return _function('i1', quantity.name, _pointers(quantity), code.lines)
+
+
+def batch_function(quantity, lanes):
+    """
+    Return the LLVM function of many states.
+
+    `lanes` states at a time. The last ones are computed twice if B is no multiple of `lanes`.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        Without conditions.
+    lanes : int
+        2, 4 or 8.
+
+    Returns
+    -------
+    str
+
+    """
+    code = Code(lanes)
+    n = quantity.joint_count
+    gravity = [_splat(code, code.line(f'load double, ptr {code.address("%gravity", i)}'))
+               for i in range(3)]
+    code.do('%last = sub i64 %count, ' + str(lanes))
+    code.do('br label %loop')
+    code.lines.append('loop:')
+    code.do('%begin = phi i64 [0, %entry], [%next, %loop]')
+    code.do('%beyond = icmp ugt i64 %begin, %last')
+    code.do('%state = select i1 %beyond, i64 %last, i64 %begin')
+    rows = {name: _row(code, f'%{name}', n) for name in quantity.inputs}
+
+    def load(name, index):
+        if name == 'gravity':
+            return gravity[index]
+        return _gather(code, rows[name], n, index)
+
+    name = append_program(code, quantity, load)
+    for place, output in enumerate(quantity.outputs):
+        row = _row(code, f'%out{place}', output.size)
+        _scatter(code, row, [name(value) for value in output.flat])
+    code.do(f'%next = add i64 %begin, {lanes}')
+    code.do('%more = icmp ult i64 %next, %count')
+    code.do('br i1 %more, label %loop, label %done')
+    code.lines.append('done:')
+    code.do('ret void')
+    return _function('void', f'{quantity.name}_batch', [*_pointers(quantity), 'i64 %count'],
+                     code.lines)
+
+
+def _pointers(quantity):
+    names = [*quantity.inputs, 'gravity', *(f'out{i}' for i in range(len(quantity.outputs)))]
+    return [f'ptr %{name}' for name in names]
+
+
+def _function(kind, name, arguments, lines):
+    return '\n'.join([f'define {kind} @{name}({", ".join(arguments)}) {{', 'entry:', *lines, '}'])
+
+
+def _row(code, pointer, width):
+    # The address of this block's first state.
+    offset = code.line(f'mul i64 %state, {width}')
+    return code.address(pointer, offset)
+
+
+def _splat(code, scalar):
+    first = code.line(f'insertelement {code.number} poison, double {scalar}, i32 0')
+    return code.line(f'shufflevector {code.number} {first}, {code.number} poison, '
+                     f'<{code.lanes} x i32> zeroinitializer')
+
+
+def _gather(code, row, width, index):
+    # Number `index` of each of the states.
+    value = 'poison'
+    for lane in range(code.lanes):
+        scalar = code.line(f'load double, ptr {code.address(row, lane * width + index)}')
+        value = code.line(f'insertelement {code.number} {value}, double {scalar}, i32 {lane}')
+    return value
+
+
+def _scatter(code, row, values):
+    # Each state's numbers side by side: squares of lanes x lanes numbers are transposed and
+    # stored by rows. The last square overlaps the one before.
+    width, lanes = len(values), code.lanes
+    if width < lanes:
+        for index, value in enumerate(values):
+            for lane in range(lanes):
+                scalar = code.line(f'extractelement {code.number} {value}, i32 {lane}')
+                address = code.address(row, lane * width + index)
+                code.do(f'store double {scalar}, ptr {address}, align 8')
+        return
+    for first in [*range(0, width - lanes, lanes), width - lanes]:
+        square = _transposed(code, values[first:first + lanes])
+        for lane, numbers in enumerate(square):
+            address = code.address(row, lane * width + first)
+            code.do(f'store {code.number} {numbers}, ptr {address}, align 8')
+
+
+def _transposed(code, square):
+    # Exchanges blocks of 1, 2, 4... numbers across the diagonal.
+    lanes, square = code.lanes, list(square)
+    step = 1
+    while step < lanes:
+        for i in range(lanes):
+            if not i & step:
+                upper, lower = square[i], square[i + step]
+                square[i] = _shuffle(code, upper, lower, [
+                    k if not k & step else lanes + k - step for k in range(lanes)])
+                square[i + step] = _shuffle(code, upper, lower, [
+                    k + step if not k & step else lanes + k for k in range(lanes)])
+        step *= 2
+    return square
+
+
+def _shuffle(code, a, b, mask):
+    places = ', '.join(f'i32 {k}' for k in mask)
+    return code.line(f'shufflevector {code.number} {a}, {code.number} {b}, '
+                     f'<{code.lanes} x i32> <{places}>')

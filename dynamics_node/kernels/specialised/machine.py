@@ -1,0 +1,92 @@
+"""The processor here: what its code is called, how LLVM code becomes its code, and loading it."""
+
+import functools
+
+import llvmlite
+import llvmlite.binding as llvm
+
+_SPEED = 2
+
+
+@functools.cache
+def _host():
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    return llvm.get_host_cpu_name(), llvm.get_host_cpu_features()
+
+
+def description():
+    """Return what machine code depends on: versions of LLVM, processor and its features."""
+    name, features = _host()
+    version = '.'.join(map(str, llvm.llvm_version_info))
+    return f'llvmlite {llvmlite.__version__} LLVM {version} {name} {features.flatten()}'
+
+
+def lanes():
+    """Return how many doubles the processor calculates with at once."""
+    _, features = _host()
+    if features.get('avx512f') and features.get('avx512dq'):
+        return 8
+    return 4 if features.get('avx2') else 2
+
+
+def _target():
+    name, features = _host()
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=name, features=features.flatten(), opt=_SPEED, codemodel='jitdefault', jit=True)
+
+
+def compile_code(text):
+    """
+    Compile LLVM code.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    bytes
+        An object file.
+
+    Raises
+    ------
+    RuntimeError
+        If LLVM does not take the code.
+
+    """
+    module, target = llvm.parse_assembly(text), _target()
+    # Sums of unlike things do not gain from being packed into vectors, and looking for such
+    # packs takes most of the time.
+    options = llvm.create_pipeline_tuning_options(speed_level=_SPEED)
+    options.slp_vectorization = False
+    passes = llvm.create_pass_builder(target, options)
+    passes.getModulePassManager().run(module, passes)
+    return target.emit_object(module)
+
+
+class LoadedCode:
+    """Machine code in memory; it stays there as long as this object."""
+
+    def __init__(self, object_file):
+        """
+        Load an object file.
+
+        Parameters
+        ----------
+        object_file : bytes
+            As `compile_code` returns it.
+
+        Raises
+        ------
+        RuntimeError
+            If LLVM cannot load it.
+
+        """
+        self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(''), _target())
+        self._engine.add_object_file(llvm.ObjectFileRef.from_data(object_file))
+        self._engine.finalize_object()
+
+    def address(self, name):
+        """Return the address of a function, 0 if there is none."""
+        return self._engine.get_function_address(name)

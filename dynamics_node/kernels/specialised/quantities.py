@@ -1,0 +1,154 @@
+"""What is specialised: each quantity as a straight-line program, recorded from `closed_form`."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .symbols import Program
+from .. import closed_form
+
+# Straight-line code grows with the square of the joints. Beyond this it takes long to compile
+# and is read from memory more slowly than the general kernel's loops run.
+MOST_OPERATIONS = 15_000
+
+
+class Quantity(NamedTuple):
+    """
+    A function of the joint state as a straight-line program.
+
+    Attributes
+    ----------
+    name : str
+    joint_count : int
+        n.
+    inputs : tuple of str
+        Names of its arguments, arrays of n numbers each.
+    program : Program
+        Its inputs are these and 'gravity', 3 numbers.
+    outputs : tuple of numpy.ndarray
+        Symbols and floats.
+    positive : tuple
+        Symbols and floats that must be positive, otherwise the outputs mean nothing.
+
+    """
+
+    name: str
+    joint_count: int
+    inputs: tuple[str, ...]
+    program: Program
+    outputs: tuple[Any, ...]
+    positive: tuple[Any, ...] = ()
+
+    @property
+    def operation_count(self):
+        """How many operations the outputs need."""
+        return len(self.program.needed(self.results()))
+
+    def results(self):
+        """Return everything to be computed, from the tips to the base, as the formulas go."""
+        results = [(max(place), value) for output in self.outputs
+                   for place, value in np.ndenumerate(output)]
+        results.sort(key=lambda item: -item[0])
+        return [*self.positive, *(value for _, value in results)]
+
+
+class _Robot:
+    # A robot in symbols: what the formulas of `closed_form` take.
+
+    def __init__(self, structure, numbers):
+        self.program = Program(MOST_OPERATIONS)
+        self.structure = structure
+        self.n = int(structure[:, 2].max()) + 1
+        self.numbers = numbers.astype(object)
+        self.numbers[-1, :3] = self.inputs('gravity', 3)
+        bodies = len(structure)
+        widths = (closed_form.POSE, closed_form.TWIST, closed_form.COMPOSITE, closed_form.TWIST,
+                  closed_form.TWIST, closed_form.MOMENTUM)
+        self.work = tuple(np.zeros((bodies, width), dtype=object) for width in widths)
+
+    def inputs(self, name, count=None):
+        count = self.n if count is None else count
+        return np.array([self.program.input(name, i) for i in range(count)], dtype=object)
+
+    def zeros(self, *shape):
+        return np.full(shape, 0.0, dtype=object)
+
+
+def dynamics(structure, numbers):
+    """Record D, C and G."""
+    robot = _Robot(structure, numbers)
+    D, C, G = robot.zeros(robot.n, robot.n), robot.zeros(robot.n, robot.n), robot.zeros(robot.n)
+    closed_form.dynamics_of_state(structure, robot.numbers, robot.inputs('q'), robot.inputs('qd'),
+                                  robot.work, D, C, G)
+    return Quantity('dynamics', robot.n, ('q', 'qd'), robot.program, (D, C, G))
+
+
+def mass_matrix(structure, numbers):
+    """Record D."""
+    robot = _Robot(structure, numbers)
+    D = robot.zeros(robot.n, robot.n)
+    closed_form.mass_matrix_of_state(structure, robot.numbers, robot.inputs('q'), robot.work, D)
+    return Quantity('mass_matrix', robot.n, ('q',), robot.program, (D,))
+
+
+def coriolis_matrix(structure, numbers):
+    """Record C."""
+    quantity = dynamics(structure, numbers)
+    return quantity._replace(name='coriolis_matrix', outputs=quantity.outputs[1:2])
+
+
+def gravity_torque(structure, numbers):
+    """Record G."""
+    robot = _Robot(structure, numbers)
+    G = robot.zeros(robot.n)
+    closed_form.gravity_of_state(structure, robot.numbers, robot.inputs('q'), robot.work, G)
+    return Quantity('gravity_torque', robot.n, ('q',), robot.program, (G,))
+
+
+def inverse_dynamics(structure, numbers):
+    """Record the efforts of a motion."""
+    robot = _Robot(structure, numbers)
+    tau = robot.zeros(robot.n)
+    closed_form.inverse_dynamics_of_state(
+        structure, robot.numbers, robot.inputs('q'), robot.inputs('qd'), robot.inputs('qdd'),
+        robot.work, tau)
+    return Quantity('inverse_dynamics', robot.n, ('q', 'qd', 'qdd'), robot.program, (tau,))
+
+
+def forward_dynamics(structure, numbers):
+    """Record the accelerations that efforts cause, D q̈ = τ - (C q̇ + G)."""
+    robot = _Robot(structure, numbers)
+    q, qd, tau = robot.inputs('q'), robot.inputs('qd'), robot.inputs('tau')
+    bias, D = robot.zeros(robot.n), robot.zeros(robot.n, robot.n)
+    closed_form.inverse_dynamics_of_state(structure, robot.numbers, q, qd, robot.zeros(robot.n),
+                                          robot.work, bias)
+    closed_form.mass_matrix_of_state(structure, robot.numbers, q, robot.work, D)
+    qdd, pivots = _solved(D, tau - bias)
+    return Quantity('forward_dynamics', robot.n, ('q', 'qd', 'tau'), robot.program, (qdd,), pivots)
+
+
+ALL = (gravity_torque, dynamics, inverse_dynamics, mass_matrix, forward_dynamics,
+       coriolis_matrix)
+
+# Names of the arguments, and how many outputs.
+SIGNATURES = {
+    'gravity_torque': (('q',), 1), 'dynamics': (('q', 'qd'), 3),
+    'inverse_dynamics': (('q', 'qd', 'qdd'), 1), 'mass_matrix': (('q',), 1),
+    'forward_dynamics': (('q', 'qd', 'tau'), 1), 'coriolis_matrix': (('q', 'qd'), 1)}
+
+
+def _solved(D, right):
+    # D x = right by Cholesky without square roots, D = L diag(pivots) Lᵀ.
+    x, n = right.copy(), len(right)
+    L = D.copy()
+    pivots: list = []
+    for j in range(n):
+        pivot = D[j, j] - sum(L[j, k] * L[j, k] * pivots[k] for k in range(j))
+        pivots.append(pivot)
+        for i in range(j + 1, n):
+            entry = D[i, j] - sum(L[i, k] * L[j, k] * pivots[k] for k in range(j))
+            L[i, j] = entry * (1.0 / pivot)
+            x[i] = x[i] - L[i, j] * x[j]
+    for i in range(n - 1, -1, -1):
+        x[i] = x[i] * (1.0 / pivots[i]) - sum(L[k, i] * x[k] for k in range(i + 1, n))
+    return x, tuple(pivots)

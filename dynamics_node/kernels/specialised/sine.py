@@ -1,0 +1,94 @@
+"""
+Sine and cosine as straight-line LLVM code, for as many angles at once as the processor has lanes.
+
+The reduction to [-pi/4, pi/4] takes pi/2 in three parts (Cody and Waite), each step by one fused
+multiplication and addition; the polynomials are those of the classic fdlibm. For angles up to
+`LARGEST_ANGLE` both are within one unit in the last place, more closely than the angle itself
+is known.
+
+"""
+
+# Beyond this the three parts of pi/2 do not suffice.
+LARGEST_ANGLE = 1e5
+
+_PI_HALF = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33)
+_TWO_OVER_PI = 0.6366197723675814
+# Added and subtracted again, this rounds to an integer and leaves it in the last bits.
+_ROUNDER = 6755399441055744.0
+_SIN = (-1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
+        2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10)
+_COS = (4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
+        -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11)
+
+
+def sine_and_cosine(code, x):
+    """
+    Append the sine and the cosine of a value to some code.
+
+    Parameters
+    ----------
+    code : Code
+    x : str
+        Name of the value, rad.
+
+    Returns
+    -------
+    tuple of str
+        Names of sine and cosine.
+
+    """
+    marked = code.fma(x, code.constant(_TWO_OVER_PI), code.constant(_ROUNDER))
+    quadrant = code.line(f'bitcast {code.number} {marked} to {code.integer}')
+    turns = code.line(f'fsub {code.number} {marked}, {code.constant(_ROUNDER)}')
+    back = code.line(f'fneg {code.number} {turns}')
+    r = x
+    for part in _PI_HALF:
+        r = code.fma(back, code.constant(part), r)
+    z = code.line(f'fmul {code.number} {r}, {r}')
+    sine = _sine(code, r, z)
+    cosine = _cosine(code, z)
+
+    # Odd quadrants swap the two; the second bit of the quadrant (of the next one for the
+    # cosine) is the sign.
+    odd = code.line(f'and {code.integer} {quadrant}, {code.integer_constant(1)}')
+    swapped = code.line(f'icmp ne {code.integer} {odd}, {code.integer_constant(0)}')
+    after = code.line(f'add {code.integer} {quadrant}, {code.integer_constant(1)}')
+    return (_signed(code, _select(code, swapped, cosine, sine), quadrant),
+            _signed(code, _select(code, swapped, sine, cosine), after))
+
+
+def _sine(code, r, z):
+    # r + r³ P(r²)
+    cube = code.line(f'fmul {code.number} {z}, {r}')
+    return code.fma(cube, _polynomial(code, _SIN, z), r)
+
+
+def _cosine(code, z):
+    # 1 - z/2 + z² P(z), with what rounding takes from 1 - z/2 given back.
+    half = code.line(f'fmul {code.number} {z}, {code.constant(0.5)}')
+    first = code.line(f'fsub {code.number} {code.constant(1.0)}, {half}')
+    lost = code.line(f'fsub {code.number} {code.constant(1.0)}, {first}')
+    lost = code.line(f'fsub {code.number} {lost}, {half}')
+    square = code.line(f'fmul {code.number} {z}, {z}')
+    rest = code.fma(square, _polynomial(code, _COS, z), lost)
+    return code.line(f'fadd {code.number} {first}, {rest}')
+
+
+def _polynomial(code, coefficients, z):
+    value = code.constant(coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        value = code.fma(value, z, code.constant(coefficient))
+    return value
+
+
+def _select(code, condition, yes, no):
+    return code.line(f'select {code.truth} {condition}, {code.number} {yes}, {code.number} {no}')
+
+
+def _signed(code, value, quadrant):
+    # Flips the sign where the second last bit of the quadrant is set.
+    bit = code.line(f'and {code.integer} {quadrant}, {code.integer_constant(2)}')
+    sign = code.line(f'shl {code.integer} {bit}, {code.integer_constant(62)}')
+    bits = code.line(f'bitcast {code.number} {value} to {code.integer}')
+    flipped = code.line(f'xor {code.integer} {bits}, {sign}')
+    return code.line(f'bitcast {code.integer} {flipped} to {code.number}')

@@ -1,0 +1,107 @@
+"""Machine code takes over without anybody waiting, and can be done without."""
+
+import inspect
+import os
+import pickle
+import subprocess
+import sys
+import time
+
+from dynamics_node import RobotModel
+import numpy as np
+import pytest
+from support.robots import PENDULUM, random_urdf
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(tmp_path))
+    return tmp_path
+
+
+def test_a_model_that_is_used_often_gets_machine_code_by_itself():
+    model = RobotModel.from_urdf(PENDULUM)
+    q = np.array([0.3])
+    expected = model.gravity_torque(q)
+    end = time.monotonic() + 60
+    while not model.is_specialised and time.monotonic() < end:
+        np.testing.assert_allclose(model.gravity_torque(q), expected, rtol=1e-14)
+    assert model.is_specialised
+    np.testing.assert_allclose(model.gravity_torque(q), expected, rtol=1e-14)
+
+
+def test_a_model_that_is_used_once_does_not():
+    model = RobotModel.from_urdf(PENDULUM)
+    model.gravity_torque([0.3])
+    assert model._evaluation.specialisation._thread is None
+
+
+def test_the_next_model_of_the_robot_has_it_at_once():
+    assert not RobotModel.from_urdf(PENDULUM).is_specialised
+    assert RobotModel.from_urdf(PENDULUM).specialise()
+    model = RobotModel.from_urdf(PENDULUM)
+    assert model.is_specialised
+    assert inspect.isbuiltin(model.dynamics)
+
+
+def test_models_under_another_gravity_get_it_too():
+    model = RobotModel.from_urdf(PENDULUM)
+    before = model.with_gravity((0.0, 0.0, 0.0))
+    assert model.specialise()
+    after = model.with_gravity((0.0, 0.0, -1.0))
+    for other in (before, after):
+        assert other.is_specialised
+        assert inspect.isbuiltin(other.gravity_torque)
+    np.testing.assert_array_equal(before.gravity_torque(np.array([0.3])), [0.0])
+
+
+def test_it_can_be_asked_for_without_waiting():
+    model = RobotModel.from_urdf(PENDULUM)
+    began = time.monotonic()
+    model.specialise(wait=False)
+    assert time.monotonic() - began < 0.1
+    assert model.specialise(wait=True)
+
+
+def test_it_can_be_switched_off(monkeypatch):
+    monkeypatch.setenv('DYNAMICS_NODE_SPECIALISE', '0')
+    model = RobotModel.from_urdf(PENDULUM)
+    assert not model.specialise()
+    assert not inspect.isbuiltin(model.dynamics)
+    assert np.isfinite(model.gravity_torque([0.3])).all()
+
+
+def test_a_robot_with_very_many_joints_goes_on_with_the_general_kernel():
+    model = RobotModel.from_urdf(random_urdf(3, joints=60, with_mimic=False))
+    assert not model.specialise()
+    assert model.gravity_torque(np.zeros(60)).shape == (60,)
+
+
+def test_a_model_can_be_pickled():
+    model = RobotModel.from_urdf(PENDULUM)
+    model.specialise()
+    copy = pickle.loads(pickle.dumps(model))
+    assert copy.is_specialised
+    np.testing.assert_array_equal(copy.gravity_torque(np.array([0.3])),
+                                  model.gravity_torque(np.array([0.3])))
+
+
+def test_a_method_of_a_subclass_stays():
+    class Doubled(RobotModel):
+        def gravity_torque(self, q):
+            return 2.0 * super().gravity_torque(q)
+
+    model, plain = Doubled.from_urdf(PENDULUM), RobotModel.from_urdf(PENDULUM)
+    assert model.specialise()
+    assert inspect.isbuiltin(model.dynamics)
+    np.testing.assert_allclose(model.gravity_torque([0.3]), 2.0 * plain.gravity_torque([0.3]))
+
+
+def test_python_may_end_while_it_is_made(folder):
+    script = (f'from dynamics_node import RobotModel\n'
+              f'RobotModel.from_urdf({str(PENDULUM)!r}).specialise(wait=False)\n')
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+    run = subprocess.run([sys.executable, '-c', script], env=environment, capture_output=True,
+                         text=True, timeout=120)
+    assert (run.returncode, run.stderr) == (0, '')
+    assert len(list(folder.iterdir())) == 1

@@ -1,0 +1,172 @@
+"""The entry from Python: the plain case at once, every other case by the fallback."""
+
+import gc
+import inspect
+import resource
+import sys
+import weakref
+
+from dynamics_node import ArgumentError, DynamicsTerms, RobotModel
+from dynamics_node.kernels.specialised import call
+import numpy as np
+import pytest
+from support.robots import PENDULUM, random_urdf
+
+pytestmark = pytest.mark.skipif(not call.is_supported(), reason='another Python than CPython')
+
+QUANTITIES = {'dynamics': 2, 'coriolis_matrix': 2, 'mass_matrix': 1, 'gravity_torque': 1,
+              'inverse_dynamics': 3, 'forward_dynamics': 3}
+
+
+@pytest.fixture(scope='module')
+def model():
+    model = RobotModel.from_urdf(random_urdf(11, joints=4, with_mimic=False))
+    assert model.specialise()
+    return model
+
+
+@pytest.fixture
+def arguments(model):
+    return list(np.random.default_rng(1).uniform(-1.0, 1.0, (3, len(model.joint_names))))
+
+
+def assert_same(actual, expected):
+    for mine, theirs in zip(np.atleast_1d(*actual), np.atleast_1d(*expected), strict=True):
+        np.testing.assert_allclose(mine, theirs, rtol=0, atol=1e-12 * np.abs(theirs).max())
+
+
+@pytest.mark.parametrize('name', QUANTITIES)
+def test_the_plain_case_is_answered_by_machine_code(model, arguments, name):
+    function, plain = getattr(model, name), arguments[:QUANTITIES[name]]
+    assert inspect.isbuiltin(function)
+    actual, expected = function(*plain), getattr(model._evaluation, name)(*plain)
+    assert type(actual) is type(expected)
+    for mine, theirs in zip(*(answer if isinstance(answer, tuple) else (answer,)
+                              for answer in (actual, expected)), strict=True):
+        assert mine.dtype == theirs.dtype
+        assert mine.shape == theirs.shape
+        assert mine.flags.carray
+        assert mine.flags.owndata
+        scale = max(1.0, np.abs(theirs).max())
+        np.testing.assert_allclose(mine, theirs, rtol=0, atol=1e-12 * scale)
+
+
+def test_the_answer_is_new_each_time(model, arguments):
+    first = model.gravity_torque(arguments[0])
+    kept = first.copy()
+    model.gravity_torque(arguments[1])
+    np.testing.assert_array_equal(first, kept)
+
+
+OTHER_SHAPES = {
+    'list': lambda q: q.tolist(), 'tuple': lambda q: tuple(q), 'integers': lambda q: q.astype(int),
+    'float32': lambda q: q.astype(np.float32), 'strided': lambda q: np.repeat(q, 2)[::2],
+    'reversed': lambda q: q[::-1].copy()[::-1], 'big endian': lambda q: q.astype('>f8'),
+    'unaligned': lambda q: np.frombuffer(b'x' + q.tobytes(), dtype=float, offset=1),
+    'subclass': lambda q: q.view(np.recarray), 'read-only': lambda q: np.broadcast_to(q, q.shape),
+    'objects': lambda q: q.astype(object), 'batch of one': lambda q: q[None],
+    'batch': lambda q: np.tile(q, (3, 1))}
+
+
+@pytest.mark.parametrize('kind', OTHER_SHAPES)
+def test_whatever_can_be_read_as_numbers_is_taken(model, arguments, kind):
+    q = OTHER_SHAPES[kind](arguments[0])
+    expected = model._evaluation.gravity_torque(q)
+    np.testing.assert_allclose(model.gravity_torque(q), expected, rtol=0,
+                               atol=1e-12 * np.abs(expected).max())
+
+
+def test_keywords_are_taken(model, arguments):
+    q, qd, _ = arguments
+    for mine, theirs in zip(model.dynamics(qd=qd, q=q), model.dynamics(q, qd), strict=True):
+        np.testing.assert_allclose(mine, theirs, atol=1e-12)
+    out = model.dynamics(q, qd)
+    assert model.dynamics(q, qd, out=out, threads=1).mass_matrix is out.mass_matrix
+
+
+@pytest.mark.parametrize('wrong', [
+    (np.zeros(5), np.zeros(4)), (np.zeros(4), np.zeros(3)), (np.zeros(()), np.zeros(4)),
+    (np.zeros(0), np.zeros(4)), ('abcd', np.zeros(4)), (None, None)])
+def test_wrong_arguments_are_refused_as_ever(model, wrong):
+    with pytest.raises((ArgumentError, TypeError, ValueError)):
+        model.dynamics(*wrong)
+
+
+@pytest.mark.parametrize('count', [0, 1, 3, 7])
+def test_a_wrong_number_of_arguments_is_a_type_error(model, count):
+    with pytest.raises(TypeError):
+        model.dynamics(*[np.zeros(4)] * count)
+
+
+@pytest.mark.parametrize('bad', [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize('place', range(4))
+def test_nan_and_infinity_in_give_nan_out(model, arguments, bad, place):
+    q, qd, qdd = arguments
+    for argument in (q, qd, qdd):
+        kept, argument[place] = argument[place], bad
+        assert not np.isfinite(model.inverse_dynamics(q, qd, qdd)).all()
+        argument[place] = kept
+    assert np.isfinite(model.inverse_dynamics(q, qd, qdd)).all()
+
+
+def test_large_angles_are_left_to_the_general_kernel(model, arguments):
+    q = arguments[0] + 1e7
+    np.testing.assert_array_equal(model.gravity_torque(q), model._evaluation.gravity_torque(q))
+
+
+def test_a_robot_without_inertia_behind_a_joint_is_refused_as_ever():
+    text = PENDULUM.read_text()
+    massless = RobotModel.from_urdf(text[:text.index('<inertial>')]
+                                    + text[text.index('</inertial>') + len('</inertial>'):])
+    expected = pytest.raises(Exception, match='not positive definite')
+    with expected:
+        massless.forward_dynamics(np.zeros(1), np.zeros(1), np.zeros(1))
+    assert massless.specialise()
+    with pytest.raises(Exception, match='not positive definite'):
+        massless.forward_dynamics(np.zeros(1), np.zeros(1), np.zeros(1))
+
+
+def test_documentation_and_signature_stay(model):
+    assert model.dynamics.__name__ == 'dynamics'
+    assert model.dynamics.__doc__ == inspect.cleandoc(RobotModel.dynamics.__doc__)
+    assert list(inspect.signature(model.dynamics).parameters) == ['q', 'qd', 'out', 'threads']
+
+
+def test_gravity_is_each_models_own(model, arguments):
+    other = model.with_gravity((1.0, -2.0, 3.0))
+    assert inspect.isbuiltin(other.gravity_torque)
+    expected = other._evaluation.gravity_torque(arguments[0])
+    np.testing.assert_allclose(other.gravity_torque(arguments[0]), expected, rtol=0,
+                               atol=1e-12 * np.abs(expected).max())
+    assert not np.allclose(expected, model.gravity_torque(arguments[0]))
+
+
+def test_a_function_outlives_its_model_and_the_model_is_freed(model, arguments):
+    short_lived = model.with_gravity((0.0, 0.0, -1.0))
+    expected = short_lived.gravity_torque(arguments[0])
+    function, gone = short_lived.gravity_torque, weakref.ref(short_lived)
+    del short_lived
+    assert gone() is None
+    np.testing.assert_array_equal(function(arguments[0]), expected)
+    np.testing.assert_allclose(function(arguments[0].tolist()), expected, atol=1e-12)
+
+
+def test_nothing_is_leaked(model, arguments):
+    q, qd, qdd = arguments
+    nan, functions = q * np.nan, [getattr(model, name) for name in QUANTITIES]
+
+    def use(times):
+        for _ in range(times):
+            for function, count in zip(functions, QUANTITIES.values(), strict=True):
+                function(*(q, qd, qdd)[:count])
+            model.dynamics(q, nan)
+
+    use(100)
+    gc.collect()
+    counts = [sys.getrefcount(item) for item in (q, DynamicsTerms, np.ndarray, q.dtype)]
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    use(20_000)
+    gc.collect()
+    assert [sys.getrefcount(item) for item in (q, DynamicsTerms, np.ndarray, q.dtype)] == counts
+    # One lost array of 4 numbers per call would be 20 MB.
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4_000

@@ -1,0 +1,76 @@
+"""Straight-line programs compute what the general kernel does."""
+
+from dynamics_node import RobotModel
+from dynamics_node.kernels.packing import pack
+from dynamics_node.kernels.specialised import quantities
+from dynamics_node.kernels.specialised.symbols import ProgramTooLongError
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from support.interpreter import run
+from support.robots import ARM7, PENDULUM, random_state, random_urdf
+
+
+def evaluate(quantity, model, **inputs):
+    results = [value for output in quantity.outputs for value in output.flat]
+    numbers = iter(run(quantity.program, results, gravity=model.gravity, **inputs))
+    return [np.array([next(numbers) for _ in output.flat]).reshape(output.shape)
+            for output in quantity.outputs]
+
+
+def assert_close(actual, expected):
+    scale = max(np.abs(expected).max(initial=0.0), 1e-3)
+    np.testing.assert_allclose(actual, expected, rtol=0, atol=1e-13 * scale)
+
+
+def hold_against_the_general_kernel(model, rng):
+    q, qd = random_state(rng, model)
+    qdd = rng.normal(size=q.size)
+    packed = pack(model.tree, model.gravity)
+    D, C, G = model._evaluation.dynamics(q, qd)
+    tau = model._evaluation.inverse_dynamics(q, qd, qdd)
+    for actual, expected in zip(evaluate(quantities.dynamics(*packed), model, q=q, qd=qd),
+                                (D, C, G), strict=True):
+        assert_close(actual, expected)
+    assert_close(evaluate(quantities.mass_matrix(*packed), model, q=q)[0], D)
+    assert_close(evaluate(quantities.coriolis_matrix(*packed), model, q=q, qd=qd)[0], C)
+    assert_close(evaluate(quantities.gravity_torque(*packed), model, q=q)[0], G)
+    assert_close(evaluate(quantities.inverse_dynamics(*packed), model, q=q, qd=qd, qdd=qdd)[0],
+                 tau)
+    # What comes back is as exact as D is well-conditioned.
+    back = evaluate(quantities.forward_dynamics(*packed), model, q=q, qd=qd, tau=tau)[0]
+    np.testing.assert_allclose(D @ back, D @ qdd, rtol=0, atol=1e-11 * np.abs(tau).max())
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_every_quantity_on_random_trees(seed):
+    # Few joints: recording takes time, and the shapes of trees are all there.
+    model = RobotModel.from_urdf(random_urdf(seed, joints=1 + seed % 5))
+    hold_against_the_general_kernel(model, np.random.default_rng(seed))
+
+
+@pytest.mark.parametrize('path', [ARM7, PENDULUM], ids=['arm7', 'pendulum'])
+def test_every_quantity_on_our_robots(path):
+    hold_against_the_general_kernel(RobotModel.from_urdf(path), np.random.default_rng(5))
+
+
+def test_the_signatures_are_those_of_the_programs():
+    model = RobotModel.from_urdf(PENDULUM)
+    recorded = [record(*pack(model.tree, model.gravity)) for record in quantities.ALL]
+    assert {quantity.name: (quantity.inputs, len(quantity.outputs))
+            for quantity in recorded} == quantities.SIGNATURES
+
+
+def test_a_straight_line_is_shorter_than_the_loops():
+    # A vertical first axis, zero offsets and right angles: an arm with none of them needs
+    # about 6000 operations.
+    model = RobotModel.from_urdf(ARM7)
+    assert quantities.dynamics(*pack(model.tree, model.gravity)).operation_count < 4500
+
+
+def test_robots_with_very_many_joints_are_not_recorded():
+    model = RobotModel.from_urdf(random_urdf(3, joints=80, with_mimic=False))
+    with pytest.raises(ProgramTooLongError):
+        quantities.dynamics(*pack(model.tree, model.gravity))

@@ -1,0 +1,68 @@
+"""Machine code on disk: found again, never trusted blindly."""
+
+from dynamics_node import RobotModel
+from dynamics_node.kernels.packing import pack
+from dynamics_node.kernels.specialised import store
+import pytest
+from support.robots import ARM7, PENDULUM
+
+CODE = bytes(range(256)) * 40
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(tmp_path / 'cache'))
+    return tmp_path / 'cache'
+
+
+def test_what_was_saved_is_loaded(folder):
+    assert store.load('name') is None
+    assert store.save('name', CODE)
+    assert store.load('name') == CODE
+    assert [path.name for path in folder.iterdir()] == ['name']
+
+
+def test_the_folder_is_for_its_owner_alone(folder):
+    store.save('name', CODE)
+    assert folder.stat().st_mode & 0o077 == 0
+
+
+@pytest.mark.parametrize('damage', [
+    lambda content: content[:-1], lambda content: b'', lambda content: content + b'x',
+    lambda content: content[:500] + bytes([content[500] ^ 1]) + content[501:]])
+def test_a_damaged_file_counts_as_missing(folder, damage):
+    store.save('name', CODE)
+    path = folder / 'name'
+    path.write_bytes(damage(path.read_bytes()))
+    assert store.load('name') is None
+
+
+def test_a_file_that_others_may_write_counts_as_missing(folder):
+    store.save('name', CODE)
+    (folder / 'name').chmod(0o666)
+    assert store.load('name') is None
+
+
+def test_a_place_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):
+    (tmp_path / 'file').write_text('')
+    monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(tmp_path / 'file' / 'cache'))
+    assert not store.save('name', CODE)
+    assert store.load('name') is None
+
+
+def test_the_users_cache_folder_is_the_usual_one(monkeypatch):
+    monkeypatch.delenv('DYNAMICS_NODE_CACHE_DIR')
+    monkeypatch.setenv('XDG_CACHE_HOME', '/somewhere')
+    assert str(store.folder()) == '/somewhere/dynamics_node'
+    monkeypatch.delenv('XDG_CACHE_HOME')
+    monkeypatch.setenv('HOME', '/home/me')
+    assert str(store.folder()) == '/home/me/.cache/dynamics_node'
+
+
+def test_the_key_knows_the_robot_but_not_gravity():
+    arm, pendulum = (RobotModel.from_urdf(path).tree for path in (ARM7, PENDULUM))
+    key = store.key(*pack(arm, (0.0, 0.0, -9.81)))
+    assert key == store.key(*pack(arm, (1.0, 2.0, 3.0)))
+    assert key != store.key(*pack(pendulum, (0.0, 0.0, -9.81)))
+    heavier = RobotModel.from_urdf(ARM7.read_text().replace('mass value="', 'mass value="1')).tree
+    assert key != store.key(*pack(heavier, (0.0, 0.0, -9.81)))
