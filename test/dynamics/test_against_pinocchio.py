@@ -1,4 +1,4 @@
-"""D, C and G element by element against Pinocchio: public robots and random trees."""
+"""D, C and G element by element against Pinocchio: random trees, and links far away."""
 
 from dynamics_node import RobotModel
 from hypothesis import given, settings
@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from support.comparison import assert_terms_agree
 from support.pinocchio_oracle import PinocchioOracle
-from support.robots import PUBLIC, public_robot, random_state, random_urdf
+from support.robots import public_robot, random_state, random_urdf
 
 RELATIVE = 1e-11
 
 
 def assert_agrees(model, oracle, q, qd):
-    """Compare D, C, G and the energies at one state; return the pairs compared."""
+    """Compare D, C, G and the energies at one state."""
     actual = model.dynamics(q, qd)
     expected = oracle.dynamics(model.joint_names, q, qd)
     assert_terms_agree(model, qd, actual, expected, RELATIVE)
@@ -21,18 +21,6 @@ def assert_agrees(model, oracle, q, qd):
     assert model.kinetic_energy(q, qd) == pytest.approx(T0, rel=RELATIVE)
     weight = model.total_mass * np.linalg.norm(model.gravity)
     assert model.potential_energy(q) == pytest.approx(V0, rel=RELATIVE, abs=1e-12 * weight)
-    return zip(actual, expected, strict=True)
-
-
-@pytest.mark.parametrize('name', PUBLIC)
-def test_public_robots(name):
-    path = public_robot(name)
-    model = RobotModel.from_urdf(path)
-    oracle = PinocchioOracle(path.read_text())
-    rng = np.random.default_rng(len(name))
-    for _ in range(20):
-        for actual, expected in assert_agrees(model, oracle, *random_state(rng, model)):
-            assert np.abs(actual - expected).max() <= RELATIVE * np.abs(expected).max()
 
 
 @settings(deadline=None)
