@@ -1,7 +1,8 @@
 """docs/accuracy.md says what the sweep finds."""
 
 import pytest
-from support.accuracy_document import misfits, PATH, render
+from support.accuracy_document import PATH, render
+from support.document_check import misfits
 
 
 @pytest.fixture(scope='module')

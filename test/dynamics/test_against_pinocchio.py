@@ -31,8 +31,8 @@ def test_another_gravity_is_the_same_for_both():
 
 # Light links far from the base. Moments about the base are up to 1e8 times larger than their own
 # inertia there, and Pinocchio's Coriolis matrix, which it sums in the base frame, loses as many
-# digits (held against 80-bit arithmetic, its error was 17 times ours on TIAGo's wrist). So D and
-# G are compared with Pinocchio, and C with the same robot near the base.
+# digits (docs/accuracy.md holds both against 80-bit arithmetic). So D and G are compared with
+# Pinocchio, and C with the same robot near the base.
 
 FINGER = ('<inertial><origin xyz="0.01 0.02 0.03"/><mass value="0.02"/><inertia ixx="1e-6" '
           'ixy="1e-8" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>')

@@ -12,9 +12,8 @@ ROBOTS = extreme_robots()
 # Of every element of D, C, G and of inverse dynamics, and of the energies.
 BOUND = 1e-11
 
-# C at the end of a boom that turns: the tip's speed, times the first moment of what hangs
-# there, cancels in C, and is the larger, the longer the boom. (1e-6 kg on a boom of 10 km: its
-# own C is 1e-8 of what cancels.)
+# C at the end of a boom that turns: the speed of the tip, times the first moment of what hangs
+# there, cancels in C, and is the larger, the longer the boom.
 BOOM_BOUND = 1e-9
 
 # Forward dynamics loses the digits that the condition of D takes, here times a few roundings.
