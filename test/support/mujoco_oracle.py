@@ -35,10 +35,8 @@ class MujocoOracle:
         _strip(robot)
         self.model, self.replaced = _compile(robot)
         self.model.opt.gravity[:] = gravity
-        # Only the rigid bodies: no contacts, no limits, no friction of the URDF's <dynamics>.
-        self.model.opt.disableflags |= (mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-                                        | mujoco.mjtDisableBit.mjDSBL_SPRING
-                                        | mujoco.mjtDisableBit.mjDSBL_DAMPER)
+        # Only the rigid bodies: without limits and <dynamics>, which are stripped, and contacts.
+        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
         self.data = mujoco.MjData(self.model)
         # What the base carries has potential energy in MuJoCo too, but no joint moves it.
         self._static = np.flatnonzero(self.model.body_weldid == 0)
