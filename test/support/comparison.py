@@ -1,5 +1,7 @@
 """When two computations of D, C and G agree: element by element, up to rounding."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 # Where a sum cancels, an element can be arbitrarily smaller than its summands, and then its
@@ -32,3 +34,68 @@ def assert_terms_agree(model, qd, actual, expected, relative):
         assert (error <= allowed).all(), (
             f'{name}{list(map(int, worst))}: {mine[worst]!r}, expected {theirs[worst]!r}, '
             f'scale {scale[worst]!r}')
+
+
+# An element's error is taken relative to the element, or to this part of its natural scale
+# where the element is smaller than that because its sum cancels.
+CANCELLED = 0.1
+
+
+class Scales(NamedTuple):
+    """The natural scale of every element of everything that is compared."""
+
+    D: np.ndarray
+    C: np.ndarray
+    G: np.ndarray
+    ID: np.ndarray
+    FD: np.ndarray | None
+
+
+def all_scales(model, D, qd, qdd):
+    """
+    Return the scales of D, C, G, of inverse and of forward dynamics.
+
+    Efforts are the sums of D q̈, C q̇ and G. An acceleration is bounded, by Cauchy and Schwarz
+    in the norm that D makes, |q̈_i|² <= (D⁻¹)_ii q̈ᵀ D q̈. FD is None where D is singular: there
+    efforts cause no definite acceleration.
+
+    """
+    sizes = natural_scales(model, D, qd)
+    efforts = sizes[0] @ np.abs(qdd) + sizes[1] @ np.abs(qd) + sizes[2]
+    try:
+        inverse = np.linalg.inv(np.linalg.cholesky(D))
+    except np.linalg.LinAlgError:
+        return Scales(*sizes, efforts, None)
+    diagonal = np.square(inverse).sum(axis=0)
+    return Scales(*sizes, efforts, np.sqrt(diagonal * (qdd @ D @ qdd)))
+
+
+def relative_error(actual, expected, scale):
+    """
+    Return the largest relative error of the elements of an array.
+
+    Each element's error is divided by the element or by CANCELLED times its scale, whichever
+    is larger. What is equal has no error, also where both are zero; NaN stays NaN.
+
+    """
+    expected = np.asarray(expected)
+    error = np.abs(np.asarray(actual) - expected)
+    size = np.maximum(np.abs(expected), CANCELLED * np.asarray(scale))
+    with np.errstate(divide='ignore', invalid='ignore'):
+        relative = np.where(error == 0, 0.0, error / size)
+    return float(np.max(relative, initial=0.0))
+
+
+def condition(D):
+    """
+    Return the condition number of D with its diagonal scaled to 1.
+
+    The scaling takes out the units and sizes of the joints, which a Cholesky solution does not
+    feel. Infinite where D is singular.
+
+    """
+    diagonal = np.diag(D)
+    if not (diagonal > 0).all():
+        return np.inf
+    eigenvalues = np.linalg.eigvalsh(D / np.sqrt(np.outer(diagonal, diagonal)))
+    return float(eigenvalues[-1] / eigenvalues[0]) if eigenvalues[0] > 0 else np.inf

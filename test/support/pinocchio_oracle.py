@@ -1,20 +1,22 @@
-"""Pinocchio as an independent judge, with its own reading of the URDF and of mimic joints."""
+"""Pinocchio as an independent judge, with its own reading of the URDF."""
 
 from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio
 
+from .mimic import mimic_chains
+
 
 class PinocchioOracle:
-    """D, C, G and the energies of a URDF by Pinocchio, in any order of the joints."""
+    """D, C, G, inverse and forward dynamics and the energies of a URDF by Pinocchio."""
 
     def __init__(self, text, gravity=(0.0, 0.0, -9.81)):
         """Read URDF text; every joint, also a mimic one, becomes a joint of its own."""
         self.model = pinocchio.buildModelFromXML(text)
         self.model.gravity.linear = np.array(gravity)
         self.data = self.model.createData()
-        self._mimic = _mimic_chains(text)
+        self._mimic = mimic_chains(ElementTree.fromstring(text.encode()))
 
     def fold(self, names):
         """Return B (nv, n) and b (nv,) with v = B qd and the joints at B q + b."""
@@ -36,6 +38,22 @@ class PinocchioOracle:
         G = pinocchio.computeGeneralizedGravity(self.model, self.data, x)
         return B.T @ D @ B, B.T @ C @ B, B.T @ G
 
+    def inverse_dynamics(self, names, q, qd, qdd):
+        """Return the efforts of a motion by recursive Newton-Euler, shape (n,)."""
+        B, b = self.fold(list(names))
+        x = self._configuration(B @ q + b)
+        return B.T @ pinocchio.rnea(self.model, self.data, x, B @ qd, B @ qdd)
+
+    def forward_dynamics(self, names, q, qd, tau):
+        """Return the accelerations of efforts, shape (n,): by articulated bodies."""
+        B, b = self.fold(list(names))
+        x = self._configuration(B @ q + b)
+        if len(B) > len(names):  # Mimic joints: solved here, from Pinocchio's matrix and bias.
+            D, _, _ = self.dynamics(names, q, qd)
+            bias = pinocchio.nonLinearEffects(self.model, self.data, x, B @ qd)
+            return np.linalg.solve(D, tau - B.T @ bias)
+        return B.T @ pinocchio.aba(self.model, self.data, x, B @ qd, B @ tau)
+
     def energies(self, names, q, qd):
         """Return kinetic and potential energy, J."""
         B, b = self.fold(list(names))
@@ -52,22 +70,3 @@ class PinocchioOracle:
             else:
                 x[joint.idx_q] = position
         return x
-
-
-def _mimic_chains(text):
-    mimic = {}
-    for joint in ElementTree.fromstring(text).findall('joint'):
-        element = joint.find('mimic')
-        if element is not None:
-            mimic[joint.get('name')] = (element.get('joint'),
-                                        float(element.get('multiplier', 1.0)),
-                                        float(element.get('offset', 0.0)))
-    chains = {}
-    for name in mimic:
-        leader, multiplier, offset = mimic[name]
-        while leader in mimic:
-            leader, m, o = mimic[leader]
-            offset += multiplier * o
-            multiplier *= m
-        chains[name] = (leader, multiplier, offset)
-    return chains

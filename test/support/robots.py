@@ -9,26 +9,21 @@ ROBOTS = Path(__file__).parents[2] / 'config' / 'robots'
 PENDULUM = ROBOTS / 'pendulum.urdf'
 ARM7 = ROBOTS / 'arm7.urdf'
 
-# The public robots that D, C and G are held against Pinocchio on.
-PUBLIC = {
-    'Panda': 'panda_description/urdf/panda.urdf',
-    'UR5': 'ur_description/urdf/ur5_robot.urdf',
-    'xArm7': 'xarm_description/urdf/xarm7.urdf',
-    'Kinova': 'kinova_description/robots/kinova.urdf',
-    'Z1': 'z1_description/urdf/z1.urdf',
-    'Baxter': 'baxter_description/urdf/baxter.urdf',
-    'TIAGo': 'tiago_description/robots/tiago.urdf',
-    'iCub': 'icub_description/robots/icub.urdf',
-    'Talos': 'talos_data/robots/talos_full_v2.urdf',
-    'G1': 'g1_description/urdf/g1_29dof_rev_1_0.urdf',
-}
+
+def public_robots():
+    """Return the names of all URDFs of example-robot-data: their paths there, sorted."""
+    folder = _public_folder()
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob('*.urdf'))
 
 
 def public_robot(name):
-    """Return the path of a public robot's URDF, by its name in PUBLIC or its path there."""
+    """Return the path of a public robot's URDF, by its name in `public_robots`."""
+    return _public_folder() / name
+
+
+def _public_folder():
     package = distribution('example-robot-data')
-    robots = Path(package.locate_file('cmeel.prefix/share/example-robot-data/robots'))
-    return robots / PUBLIC.get(name, name)
+    return Path(package.locate_file('cmeel.prefix/share/example-robot-data/robots'))
 
 
 def random_urdf(seed, joints=None, with_mimic=True, mass_scale=1.0, prismatic=0.3):

@@ -1,0 +1,15 @@
+"""The extreme robots by all routes, once per process: for their test and docs/accuracy.md."""
+
+from functools import cache
+
+from dynamics_node import RobotModel
+
+from .extreme_robots import extreme_robots
+from .sweep import row
+
+
+@cache
+def compare_extreme(name):
+    """Return the Row of one of `extreme_robots`."""
+    text = extreme_robots()[name]
+    return row(name, text, RobotModel.from_urdf(text))
