@@ -24,7 +24,7 @@ class RobotModel:
     A robot with a fixed base: D(q) q̈ + C(q, q̇) q̇ + G(q) = τ.
 
     Frozen: another gravity makes another model. Every method takes arrays with leading batch
-    axes and may be called from several threads. NaN in a position gives NaN in the answer.
+    axes and may be called from several threads. NaN in an argument gives NaN in all that depends on it.
 
     Large batches are computed by as many threads as the process may use, or by `threads`.
 

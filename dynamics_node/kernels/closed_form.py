@@ -9,7 +9,9 @@ moved by the offset between them, equation (21).
 Every 4x4 matrix has few different numbers, and only those are kept, one row per body:
 
     pose      = (rotation, row-major; origin; offset)   body → base; offset: from the parent
-    twist     = (wx wy wz vx vy vz)                     xi, of the joint; velocity V likewise
+    twist     = (wx wy wz vx vy vz)                     xi, of the joint
+    velocity  = (Wx Wy Wz, Ux Uy Uz)                    W of the body; U of the joint's origin
+                                                        relative to the parent's
     composite = (m, hx hy hz, xx xy xz yy yz zz)        Jc, symmetric 4x4
     momentum  = (xx xy xz yx yy yz zx zy zz, x y z)     Lc, 3x4: left 3x3 block, last column
 
@@ -149,7 +151,8 @@ def dynamics_of_state(structure, numbers, q, qd, work, D, C, G):
     outward(structure, numbers, q, pose, twist, composite)
     outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate)
     momenta(structure, velocity, composite, momentum)
-    inward_dynamics(structure, numbers, pose, twist, twist_rate, composite, momentum, D, C)
+    inward_dynamics(structure, numbers, pose, twist, velocity, twist_rate, composite, momentum,
+                    D, C)
     gravity_torques(structure, numbers, twist, composite, G)
 
 
@@ -178,7 +181,8 @@ def inverse_dynamics_of_state(structure, numbers, q, qd, qdd, work, tau):
     acceleration, wrench = scratch[:, :TWIST], scratch[:, TWIST:]
     outward(structure, numbers, q, pose, twist, K)
     outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate)
-    outward_acceleration(structure, numbers, qd, qdd, pose, twist, twist_rate, acceleration)
+    outward_acceleration(structure, numbers, qd, qdd, pose, twist, velocity, twist_rate,
+                         acceleration)
     inward_efforts(structure, numbers, pose, twist, velocity, acceleration, K, wrench, tau)
 
 
@@ -264,7 +268,10 @@ def _pseudo_inertia_in_base(numbers, k, R, K):
 @formula
 def outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate):
     """
-    Walk from the base to the tips: velocity V_k and the rate of every joint's twist.
+    Walk from the base to the tips: velocities and the rate of every joint's twist.
+
+    A translation that all bodies share changes neither D nor C, equation (24). So each joint
+    counts velocities from that of its own origin, and the tip of a long boom loses no digits.
 
     Parameters
     ----------
@@ -274,7 +281,8 @@ def outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate):
     pose, twist : numpy.ndarray
         As `outward` leaves them.
     velocity : numpy.ndarray, shape (N, 6)
-        Overwritten: equation (11).
+        Overwritten: angular velocity of the body, equation (11), and velocity of the joint's
+        origin relative to the parent's.
     twist_rate : numpy.ndarray, shape (N, 6)
         Overwritten: equation (14).
 
@@ -285,21 +293,19 @@ def outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate):
         w, v = _vector(twist, k, 0), _vector(twist, k, 3)
         W, U = _scale(speed, w), _scale(speed, v)
         if parent >= 0:
-            # (11) V_k = V_parent + xi_k qd_k, the parent's moved to this joint by (21).
             up = _vector(velocity, parent, 0)
-            moved = _add(_vector(velocity, parent, 3), _cross(up, _vector(pose, k, OF_OFFSET)))
-            W, U = _add(up, W), _add(moved, U)
+            W, U = _add(up, W), _add(_cross(up, _vector(pose, k, OF_OFFSET)), U)
         _put(velocity, k, 0, W)
         _put(velocity, k, 3, U)
-        # (14) V xi - xi V: rotation W x w; translation W x v - w x U.
+        # (14) V xi - xi V with V = (W, 0): rotation W x w, translation W x v.
         _put(twist_rate, k, 0, _cross(W, w))
-        _put(twist_rate, k, 3, _subtract(_cross(W, v), _cross(w, U)))
+        _put(twist_rate, k, 3, _cross(W, v))
 
 
 @formula
 def momenta(structure, velocity, K, momentum):
     """
-    Compute V_k K_k of every body, the summand of (13).
+    Compute V_k K_k of every body, the summand of (13), relative to the joint's origin.
 
     Parameters
     ----------
@@ -314,14 +320,13 @@ def momenta(structure, velocity, K, momentum):
 
     """
     for k in range(structure.shape[0]):
-        # V K = [W]× Sigma + U hᵀ in the left block, W x h + m U in the last column.
-        W, U = _vector(velocity, k, 0), _vector(velocity, k, 3)
-        h, sigma = _vector(K, k, 1), _second_moments(K, k, 4)
-        x = _add(_cross(W, (sigma[0], sigma[3], sigma[6])), _scale(h[0], U))
-        y = _add(_cross(W, (sigma[1], sigma[4], sigma[7])), _scale(h[1], U))
-        z = _add(_cross(W, (sigma[2], sigma[5], sigma[8])), _scale(h[2], U))
+        # V K with V = (W, 0): [W]× Sigma in the left block, W x h in the last column.
+        W, sigma = _vector(velocity, k, 0), _second_moments(K, k, 4)
+        x = _cross(W, (sigma[0], sigma[3], sigma[6]))
+        y = _cross(W, (sigma[1], sigma[4], sigma[7]))
+        z = _cross(W, (sigma[2], sigma[5], sigma[8]))
         _put_matrix(momentum, k, 0, _transposed((*x, *y, *z)))
-        _put(momentum, k, 9, _add(_cross(W, h), _scale(K[k, 0], U)))
+        _put(momentum, k, 9, _cross(W, _vector(K, k, 1)))
 
 
 # From the tips to the base -----------------------------------------------------------------
@@ -362,12 +367,14 @@ def _add_composite(pose, Jc, j, parent):
 
 
 @formula
-def _add_momentum(pose, Lc, j, parent):
-    # (13) and (21): L + l dᵀ in the left block, l in the last column.
-    l, d = _vector(Lc, j, 9), _vector(pose, j, OF_OFFSET)  # noqa: E741 (the formula's symbol)
-    _accumulate(Lc, parent, 0, _add(_vector(Lc, j, 0), _scale(l[0], d)))
-    _accumulate(Lc, parent, 3, _add(_vector(Lc, j, 3), _scale(l[1], d)))
-    _accumulate(Lc, parent, 6, _add(_vector(Lc, j, 6), _scale(l[2], d)))
+def _add_momentum(pose, velocity, Jc, Lc, j, parent):
+    # (13) relative to the parent's origin, from which this joint's moves away by U: (24) adds
+    # U hᵀ to the left block and U m to the last column. Then (21): L + l dᵀ.
+    U, h, d = _vector(velocity, j, 3), _vector(Jc, j, 1), _vector(pose, j, OF_OFFSET)
+    l = _add(_vector(Lc, j, 9), _scale(Jc[j, 0], U))  # noqa: E741 (the formula's symbol)
+    for i in range(3):
+        row = _add(_scale(U[i], h), _scale(l[i], d))
+        _accumulate(Lc, parent, 3 * i, _add(_vector(Lc, j, 3 * i), row))
     _accumulate(Lc, parent, 9, l)
 
 
@@ -403,13 +410,13 @@ def inward_mass(structure, numbers, pose, twist, Jc, D):
 
 
 @formula
-def inward_dynamics(structure, numbers, pose, twist, twist_rate, Jc, Lc, D, C):
+def inward_dynamics(structure, numbers, pose, twist, velocity, twist_rate, Jc, Lc, D, C):
     """
     Add up D and C from the tips to the base, equations (12), (13), (15) and (16).
 
     Parameters
     ----------
-    structure, numbers, pose, twist, twist_rate : numpy.ndarray
+    structure, numbers, pose, twist, velocity, twist_rate : numpy.ndarray
         As `outward` and `outward_velocity` leave them.
     Jc : numpy.ndarray, shape (N, 10)
         K_k before, Jc_k after.
@@ -422,8 +429,8 @@ def inward_dynamics(structure, numbers, pose, twist, twist_rate, Jc, Lc, D, C):
     for j in range(structure.shape[0] - 1, -1, -1):
         parent = structure[j, PARENT]
         if parent >= 0:
+            _add_momentum(pose, velocity, Jc, Lc, j, parent)
             _add_composite(pose, Jc, j, parent)
-            _add_momentum(pose, Lc, j, parent)
         w, v = _vector(twist, j, 0), _vector(twist, j, 3)
         torque, force = _force(Jc, j, w, v)
         # The six numbers of (rate of xi) Jc + xi Lc, and the axial part of xi Lcᵀ.
@@ -446,6 +453,8 @@ def inward_dynamics(structure, numbers, pose, twist, twist_rate, Jc, Lc, D, C):
                                       + _dot(_vector(twist, i, 0), mirrored))    # swapped names
             torque = _moved(pose, i, torque, force)
             torque2 = _moved(pose, i, torque2, force2)
+            # xi Lcᵀ relative to the parent's origin: (24) and axial(f Uᵀ) = U x f.
+            mirrored = _add(mirrored, _cross(_vector(velocity, i, 3), force))
             i = structure[i, PARENT]
 
 
@@ -530,34 +539,41 @@ def potential_energy(structure, numbers, pose, Jc):
 
 
 @formula
-def outward_acceleration(structure, numbers, qd, qdd, pose, twist, twist_rate, acceleration):
+def outward_acceleration(structure, numbers, qd, qdd, pose, twist, velocity, twist_rate,
+                         acceleration):
     """
-    Walk from the base to the tips: the rate of V_k, in a world that accelerates by -g.
+    Walk from the base to the tips: A'' = H A of every body, in a world that accelerates by -g.
 
     Parameters
     ----------
-    structure, numbers, pose, twist, twist_rate : numpy.ndarray
+    structure, numbers, pose, twist, velocity, twist_rate : numpy.ndarray
         As `outward` and `outward_velocity` leave them; gravity is the last row of `numbers`.
     qd, qdd : numpy.ndarray, shape (n,)
     acceleration : numpy.ndarray, shape (N, 6)
-        Overwritten: equation (23).
+        Overwritten: angular acceleration and the acceleration of the joint's origin, which make
+        up H by equation (22).
 
     """
     for k in range(structure.shape[0]):
         parent, multiplier = structure[k, PARENT], numbers[k, MULTIPLIER]
         speed = multiplier * qd[structure[k, COORDINATE]]
         change = multiplier * qdd[structure[k, COORDINATE]]
+        # (23), the joint's own part: xi q'' + rate of xi q', and once more the rate for a slide,
+        # because the body turns under it.
+        a = _add(_scale(change, _vector(twist, k, 0)), _scale(speed, _vector(twist_rate, k, 0)))
+        c = _add(_scale(change, _vector(twist, k, 3)),
+                 _scale(2.0 * speed, _vector(twist_rate, k, 3)))
         if parent >= 0:
-            up = _vector(acceleration, parent, 0)
-            moved = _add(_vector(acceleration, parent, 3),
-                         _cross(up, _vector(pose, k, OF_OFFSET)))
+            # The last column of the parent's H, moved by the offset: c + [a]× d + W x (W x d).
+            up, W = _vector(acceleration, parent, 0), _vector(velocity, parent, 0)
+            d = _vector(pose, k, OF_OFFSET)
+            c = _add(c, _add(_vector(acceleration, parent, 3),
+                             _add(_cross(up, d), _cross(W, _cross(W, d)))))
+            a = _add(a, up)
         else:
-            up = (0.0, 0.0, 0.0)
-            moved = _scale(-1.0, _vector(numbers, structure.shape[0], 0))
-        _put(acceleration, k, 0, _add(up, _add(_scale(change, _vector(twist, k, 0)),
-                                               _scale(speed, _vector(twist_rate, k, 0)))))
-        _put(acceleration, k, 3, _add(moved, _add(_scale(change, _vector(twist, k, 3)),
-                                                  _scale(speed, _vector(twist_rate, k, 3)))))
+            c = _subtract(c, _vector(numbers, structure.shape[0], 0))
+        _put(acceleration, k, 0, a)
+        _put(acceleration, k, 3, c)
 
 
 @formula
@@ -570,17 +586,16 @@ def inward_efforts(structure, numbers, pose, twist, velocity, acceleration, K, w
     structure, numbers, pose, twist, velocity, acceleration, K : numpy.ndarray
         As the outward walks leave them.
     wrench : numpy.ndarray, shape (N, 6)
-        Overwritten: axial part and last column of the sum of (V' + V V) K over the subtree.
+        Overwritten: axial part and last column of the sum of H K over the subtree.
     tau : numpy.ndarray, shape (n,)
         Zero before.
 
     """
     for k in range(structure.shape[0]):
-        W, U = _vector(velocity, k, 0), _vector(velocity, k, 3)
         h, sigma = _vector(K, k, 1), _second_moments(K, k, 4)
-        a = _vector(acceleration, k, 0)
-        c = _add(_vector(acceleration, k, 3), _cross(W, U))
-        # Left block of V' + V V: [a]× + [W]×[W]×, last column c. Hence by (18):
+        W, a, c = (_vector(velocity, k, 0), _vector(acceleration, k, 0),
+                   _vector(acceleration, k, 3))
+        # H has the left block [a]× + [W]×[W]× and the last column c; hence by (18):
         _put(wrench, k, 0, _add(_axial(sigma, a),
                                 _add(_cross(_times(sigma, W), W), _cross(h, c))))
         _put(wrench, k, 3, _add(_add(_cross(a, h), _cross(W, _cross(W, h))),

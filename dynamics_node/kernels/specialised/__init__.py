@@ -8,6 +8,8 @@ kept on disk (`store`). `robot_code` puts it together.
 
 Nobody waits for it: the general kernel answers until it is ready.
 
+What may change here: how the formulas become machine code, never the formulas.
+
 """
 
 from .call import is_supported, make_callable

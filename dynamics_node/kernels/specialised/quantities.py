@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .symbols import Program
+from .symbols import Program, Symbol
 from .. import closed_form
 
 # Straight-line code grows with the square of the joints. Beyond this it takes long to compile
@@ -142,13 +142,20 @@ def _solved(D, right):
     x, n = right.copy(), len(right)
     L = D.copy()
     pivots: list = []
+    inverses: list = []
     for j in range(n):
         pivot = D[j, j] - sum(L[j, k] * L[j, k] * pivots[k] for k in range(j))
         pivots.append(pivot)
+        inverses.append(_inverse(pivot))
         for i in range(j + 1, n):
             entry = D[i, j] - sum(L[i, k] * L[j, k] * pivots[k] for k in range(j))
-            L[i, j] = entry * (1.0 / pivot)
+            L[i, j] = entry * inverses[j]
             x[i] = x[i] - L[i, j] * x[j]
     for i in range(n - 1, -1, -1):
-        x[i] = x[i] * (1.0 / pivots[i]) - sum(L[k, i] * x[k] for k in range(i + 1, n))
+        x[i] = x[i] * inverses[i] - sum(L[k, i] * x[k] for k in range(i + 1, n))
     return x, tuple(pivots)
+
+
+def _inverse(pivot):
+    # A pivot that is zero whatever the state makes the result meaningless: see `positive`.
+    return 0.0 if not isinstance(pivot, Symbol) and pivot <= 0.0 else 1.0 / pivot

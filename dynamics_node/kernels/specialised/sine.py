@@ -1,10 +1,9 @@
 """
 Sine and cosine as straight-line LLVM code, for as many angles at once as the processor has lanes.
 
-The reduction to [-pi/4, pi/4] takes pi/2 in three parts (Cody and Waite), each step by one fused
-multiplication and addition; the polynomials are those of the classic fdlibm. For angles up to
-`LARGEST_ANGLE` both are within one unit in the last place, more closely than the angle itself
-is known.
+The reduction to [-pi/4, pi/4] takes pi/2 in three parts (Cody and Waite) by fused multiplications
+and additions, and keeps what rounding loses; the polynomials are those of the classic fdlibm. For
+angles up to `LARGEST_ANGLE` both are within one unit in the last place.
 
 """
 
@@ -40,13 +39,11 @@ def sine_and_cosine(code, x):
     marked = code.fma(x, code.constant(_TWO_OVER_PI), code.constant(_ROUNDER))
     quadrant = code.line(f'bitcast {code.number} {marked} to {code.integer}')
     turns = code.line(f'fsub {code.number} {marked}, {code.constant(_ROUNDER)}')
-    back = code.line(f'fneg {code.number} {turns}')
-    r = x
-    for part in _PI_HALF:
-        r = code.fma(back, code.constant(part), r)
+    r, rest = _reduced(code, x, turns)
     z = code.line(f'fmul {code.number} {r}, {r}')
-    sine = _sine(code, r, z)
-    cosine = _cosine(code, z)
+    half = code.line(f'fmul {code.number} {z}, {code.constant(0.5)}')
+    sine = _sine(code, r, rest, z, half)
+    cosine = _cosine(code, r, rest, z, half)
 
     # Odd quadrants swap the two; the second bit of the quadrant (of the next one for the
     # cosine) is the sign.
@@ -57,21 +54,43 @@ def sine_and_cosine(code, x):
             _signed(code, _select(code, swapped, sine, cosine), after))
 
 
-def _sine(code, r, z):
-    # r + r³ P(r²)
+def _reduced(code, x, turns):
+    # x - turns pi/2 as r + rest: r to the last place, rest what rounding has lost.
+    first, second, third = map(code.constant, _PI_HALF)
+    back = code.line(f'fneg {code.number} {turns}')
+    rough = code.fma(back, first, x)                    # Exact: all but few leading bits cancel.
+    step = code.line(f'fmul {code.number} {turns}, {second}')
+    less = code.line(f'fneg {code.number} {step}')
+    lost_in_step = code.fma(turns, second, less)
+    # r = rough - step, and what its rounding loses (Knuth), whichever of the two is larger.
+    r = code.line(f'fsub {code.number} {rough}, {step}')
+    taken = code.line(f'fsub {code.number} {r}, {rough}')
+    left = code.line(f'fsub {code.number} {r}, {taken}')
+    left = code.line(f'fsub {code.number} {rough}, {left}')
+    right = code.line(f'fadd {code.number} {step}, {taken}')
+    lost = code.line(f'fsub {code.number} {left}, {right}')
+    lost = code.line(f'fsub {code.number} {lost}, {lost_in_step}')
+    return r, code.fma(back, third, lost)
+
+
+def _sine(code, r, rest, z, half):
+    # The angle is r + rest: r + (r³ P(r²) + rest (1 - r²/2))
     cube = code.line(f'fmul {code.number} {z}, {r}')
-    return code.fma(cube, _polynomial(code, _SIN, z), r)
+    lost = code.line(f'fneg {code.number} {half}')
+    small = code.fma(cube, _polynomial(code, _SIN, z), code.fma(lost, rest, rest))
+    return code.line(f'fadd {code.number} {r}, {small}')
 
 
-def _cosine(code, z):
-    # 1 - z/2 + z² P(z), with what rounding takes from 1 - z/2 given back.
-    half = code.line(f'fmul {code.number} {z}, {code.constant(0.5)}')
-    first = code.line(f'fsub {code.number} {code.constant(1.0)}, {half}')
-    lost = code.line(f'fsub {code.number} {code.constant(1.0)}, {first}')
+def _cosine(code, r, rest, z, half):
+    # 1 - z/2 + (z² P(z) - r rest), with what rounding takes from 1 - z/2 given back.
+    one = code.constant(1.0)
+    first = code.line(f'fsub {code.number} {one}, {half}')
+    lost = code.line(f'fsub {code.number} {one}, {first}')
     lost = code.line(f'fsub {code.number} {lost}, {half}')
     square = code.line(f'fmul {code.number} {z}, {z}')
-    rest = code.fma(square, _polynomial(code, _COS, z), lost)
-    return code.line(f'fadd {code.number} {first}, {rest}')
+    back = code.line(f'fneg {code.number} {r}')
+    small = code.fma(square, _polynomial(code, _COS, z), code.fma(back, rest, lost))
+    return code.line(f'fadd {code.number} {first}, {small}')
 
 
 def _polynomial(code, coefficients, z):

@@ -36,12 +36,6 @@ def test_code_of_another_robot_is_refused(packed):
         robot_code.RobotCode(*packed, wrong)
 
 
-def test_what_is_not_machine_code_is_refused(packed):
-    store.save(store.key(*packed), b'no object file')
-    assert robot_code.from_disk(*packed) is None
-    assert robot_code.make(*packed) is not None
-
-
 def test_the_background_tells_when_it_is_ready(packed):
     answers = []
     robot_code.make_in_background(*packed, answers.append).join()
