@@ -18,6 +18,15 @@ _PIECE = 1024
 
 _FLOAT = np.dtype(np.float64)
 
+# The arrays of an answer for one state, by the number of joints.
+SHAPES = {
+    'dynamics': lambda n: ((n, n), (n, n), (n,)),
+    'mass_matrix': lambda n: ((n, n),),
+    'coriolis_matrix': lambda n: ((n, n),),
+    'gravity_torque': lambda n: ((n,),),
+    'inverse_dynamics': lambda n: ((n,),),
+    'forward_dynamics': lambda n: ((n,),)}
+
 
 class Evaluation:
     """
@@ -86,11 +95,9 @@ class Evaluation:
 
     def dynamics(self, q, qd, *, out=None, threads=None):
         """Return D, C and G, each with the batch axes of q and qd first."""
-        n = self._n
         lead, arrays = self.states(q=q, qd=qd)
-        shapes = (n, n), (n, n), (n,)
         return DynamicsTerms(*self._run('dynamics', closed_form.dynamics, lead, ('q', 'qd'),
-                                        arrays, shapes, out, threads))
+                                        arrays, out, threads))
 
     def coriolis_matrix(self, q, qd, *, threads=None):
         """Return C with the batch axes of q and qd first."""
@@ -100,19 +107,19 @@ class Evaluation:
         """Return D with the batch axes of q first."""
         lead, arrays = self.states(q=q)
         return self._run('mass_matrix', closed_form.mass_matrix, lead, ('q',), arrays,
-                         ((self._n, self._n),), _one(out), threads)[0]
+                         _one(out), threads)[0]
 
     def gravity_torque(self, q, *, out=None, threads=None):
         """Return G with the batch axes of q first."""
         lead, arrays = self.states(q=q)
-        return self._run('gravity_torque', _gravity_torque, lead, ('q',), arrays, ((self._n,),),
-                         _one(out), threads)[0]
+        return self._run('gravity_torque', _gravity_torque, lead, ('q',), arrays, _one(out),
+                         threads)[0]
 
     def inverse_dynamics(self, q, qd, qdd, *, out=None, threads=None):
         """Return the efforts of a motion with the batch axes of its arguments first."""
         lead, arrays = self.states(q=q, qd=qd, qdd=qdd)
         return self._run('inverse_dynamics', closed_form.inverse_dynamics, lead,
-                         ('q', 'qd', 'qdd'), arrays, ((self._n,),), _one(out), threads)[0]
+                         ('q', 'qd', 'qdd'), arrays, _one(out), threads)[0]
 
     def forward_dynamics(self, q, qd, tau, *, threads=None):
         """Return the accelerations that efforts cause, by a Cholesky factorisation of D."""
@@ -139,8 +146,8 @@ class Evaluation:
         closed_form.gravity_torque(*self.packed, q, G, V)
         return V.reshape(lead)
 
-    def _run(self, name, kernel, lead, inputs, arrays, shapes, out, threads):
-        count = len(arrays[0])
+    def _run(self, name, kernel, lead, inputs, arrays, out, threads):
+        count, shapes = len(arrays[0]), SHAPES[name](self._n)
         results = [np.empty((*lead, *shape)) for shape in shapes] if out is None else list(out)
         if out is not None:
             _check_out(results, [(*lead, *shape) for shape in shapes])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .evaluation import Evaluation
+from .evaluation import Evaluation, SHAPES
 from .specialisation import Specialisation
 from .terms import DynamicsTerms
 from ..errors import ArgumentError
@@ -14,17 +14,13 @@ from ..urdf import read_urdf
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
 
 
-# What machine code for one robot can answer by itself, for one state.
-_QUICK = ('dynamics', 'mass_matrix', 'coriolis_matrix', 'gravity_torque', 'inverse_dynamics',
-          'forward_dynamics')
-
-
 class RobotModel:
     """
     A robot with a fixed base: D(q) q̈ + C(q, q̇) q̇ + G(q) = τ.
 
     Frozen: another gravity makes another model. Every method takes arrays with leading batch
-    axes and may be called from several threads. NaN in an argument gives NaN in all that depends on it.
+    axes and may be called from several threads. NaN in an argument gives NaN in all that depends
+    on it.
 
     Large batches are computed by as many threads as the process may use, or by `threads`.
 
@@ -194,11 +190,12 @@ class RobotModel:
     def _use(self, code):
         # Machine code takes the place of methods. What it does not take, it hands to the
         # evaluation, not to the method: a function that refers to its model would never be freed.
-        for name in _QUICK:
+        for name, shapes in SHAPES.items():
             if getattr(type(self), name) is getattr(RobotModel, name):
                 fallback = getattr(self._evaluation, name)
                 setattr(self, name, make_callable(
-                    code.loaded, name, fallback, getattr(RobotModel, name).__doc__,
+                    code.loaded, name, shapes(self._n), fallback,
+                    getattr(RobotModel, name).__doc__,
                     DynamicsTerms, self._gravity))
 
     def mass_matrix(self, q, *, out=None, threads=None):

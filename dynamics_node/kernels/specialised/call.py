@@ -8,6 +8,10 @@ plain case only: positional arrays of float64, contiguous, of shape (n,), with f
 Everything else (lists, batches, keywords, wrong shapes, NaN) goes to a Python function, which
 knows how to convert and what to say.
 
+Making the arrays of an answer takes as long as computing a small arm. So each entry keeps a few
+answers, and gives one out again when nobody holds it, or any array of it, any more: Python's own
+reference counts say so, and what is held is never touched.
+
 The entry reads the arguments as numpy and CPython lay them out in memory (`PyArrayObject` and
 `PyMethodDef`, both public and unchanged for many years). `is_supported` looks whether it is so.
 
@@ -25,9 +29,10 @@ from .code import Code
 from .sine import LARGEST_ANGLE
 
 # Bytes from the begin of an object to the field.
-_TYPE = 8
-_DATA, _DIMENSION_COUNT, _DIMENSIONS, _DESCRIPTION, _FLAGS = 16, 24, 32, 56, 64
+_REFERENCES, _TYPE = 0, 8
+_DATA, _DIMENSION_COUNT, _DIMENSIONS, _DESCRIPTION, _FLAGS, _WEAK = 16, 24, 32, 56, 64, 72
 _CONTIGUOUS_AND_ALIGNED = 0x101
+_OWN_PLAIN = 0x505              # The same, owner of its data, and writeable.
 _FLOAT64 = 12                   # NPY_DOUBLE
 _METHOD_FLAGS = 0x80 | 0x02     # METH_FASTCALL | METH_KEYWORDS
 _PYARRAY_NEW = 93               # Place in numpy's table of C functions.
@@ -39,6 +44,9 @@ LARGEST_NUMBER = 1e100
 _SLOTS = ('fallback', 'array_type', 'float64', 'terms_type', 'new_array', 'new_object',
           'set_item', 'release', 'call')
 _GRAVITY = len(_SLOTS)
+_KEPT = _GRAVITY + 3            # From here: answers, each followed by its arrays.
+# A loop that holds the last answer, and the one before, still finds a free one.
+_ANSWERS = 4
 
 
 def entry_function(quantity):
@@ -57,9 +65,10 @@ def entry_function(quantity):
     """
     entry = _Entry(quantity)
     entry.check_arguments()
-    entry.make_arrays()
+    for place in range(_ANSWERS):
+        entry.take_kept(place)
+    entry.make_new()
     entry.compute()
-    entry.answer()
     entry.fall_back()
     return '\n'.join([
         f'define ptr @{quantity.name}_call(ptr %self, ptr %arguments, i64 %count, ptr %keywords) '
@@ -78,6 +87,8 @@ class _Entry:
         # Room on the stack is taken first, so that it is taken once.
         self.shapes = [self.code.line(f'alloca [{output.ndim} x i64]')
                        for output in quantity.outputs]
+        self.out = [self.code.line('alloca ptr') for _ in quantity.outputs]
+        self.answer = self.code.line('alloca ptr')
         self.context = self.load('ptr', '%self', _DATA)
 
     def load(self, kind, pointer, offset):
@@ -134,59 +145,90 @@ class _Entry:
             conditions.append(code.line(f'fcmp olt double {size}, {code.constant(bound)}'))
         return self.all_of(conditions)
 
-    def make_arrays(self):
+    def take_kept(self, place):
+        # An answer that nobody else holds: one reference to it and to each of its arrays.
+        code, outputs = self.code, self.quantity.outputs
+        stride = 8 * (1 + len(outputs))
+        offset = 8 * _KEPT + stride * place
+        busy = self.label()
+        answer = self.load('ptr', self.context, offset)
+        self.demand(self._is_free(answer), busy)
+        for index, output in enumerate(outputs):
+            array = answer
+            if len(outputs) > 1:
+                array = self.load('ptr', self.context, offset + 8 * (1 + index))
+                self.demand(self._is_free(array), busy)
+            self.demand(self._is_plain(array, output.shape), busy)
+            code.do(f'store ptr {self.load("ptr", array, _DATA)}, ptr {self.out[index]}')
+        code.do(f'store i64 2, ptr {answer}')
+        code.do(f'store ptr {answer}, ptr {self.answer}')
+        code.do('br label %compute')
+        code.lines.append(f'{busy}:')
+
+    def _is_free(self, item):
+        return self.equal('i64', self.load('i64', item, _REFERENCES), 1)
+
+    def _is_plain(self, array, shape):
+        # Whoever had it may have changed its shape, type or flags, or still watch it.
+        flags = self.code.line(f'and i32 {self.load("i32", array, _FLAGS)}, {_OWN_PLAIN}')
+        dimensions = self.load('ptr', array, _DIMENSIONS)
+        return self.all_of([
+            self.equal('i32', flags, _OWN_PLAIN),
+            self.equal('ptr', self.load('ptr', array, _WEAK), 'null'),
+            self.equal('ptr', self.load('ptr', array, _DESCRIPTION), self.slot('float64')),
+            self.equal('i32', self.load('i32', array, _DIMENSION_COUNT), len(shape)),
+            *(self.equal('i64', self.load('i64', dimensions, 8 * axis), length)
+              for axis, length in enumerate(shape))])
+
+    def make_new(self):
         code = self.code
         array_type, new_array = self.slot('array_type'), self.slot('new_array')
-        for shape, output in zip(self.shapes, self.quantity.outputs, strict=True):
+        for index, (shape, output) in enumerate(zip(self.shapes, self.quantity.outputs,
+                                                    strict=True)):
             for axis, length in enumerate(output.shape):
                 code.do(f'store i64 {length}, ptr {code.address(shape, axis)}')
             array = code.line(
                 f'call ptr {new_array}(ptr {array_type}, i32 {output.ndim}, ptr {shape}, '
                 f'i32 {_FLOAT64}, ptr null, ptr null, i32 0, i32 0, ptr null)')
-            failed, made = self.label(), self.label()
-            code.do(f'br i1 {self.equal("ptr", array, "null")}, label %{failed}, label %{made}')
-            code.lines.append(f'{failed}:')
-            self.release()
-            code.do('ret ptr null')
-            code.lines.append(f'{made}:')
+            self._stop_without(array)
+            code.do(f'store ptr {self.load("ptr", array, _DATA)}, ptr {self.out[index]}')
             self.arrays.append(array)
+        answer = self.arrays[0]
+        if len(self.arrays) > 1:
+            answer = code.line(f'call ptr {self.slot("new_object")}'
+                               f'(ptr {self.slot("terms_type")}, i64 {len(self.arrays)})')
+            self._stop_without(answer)
+            set_item = self.slot('set_item')
+            for index, array in enumerate(self.arrays):
+                code.line(f'call i32 {set_item}(ptr {answer}, i64 {index}, ptr {array})')
+        code.do(f'store ptr {answer}, ptr {self.answer}')
+        code.do('br label %compute')
 
-    def release(self):
-        release = self.slot('release')
+    def _stop_without(self, item):
+        # No memory: Python has set the error already.
+        code = self.code
+        failed, made = self.label(), self.label()
+        code.do(f'br i1 {self.equal("ptr", item, "null")}, label %{failed}, label %{made}')
+        code.lines.append(f'{failed}:')
         for array in self.arrays:
-            self.code.do(f'call void {release}(ptr {array})')
+            code.do(f'call void {self.slot("release")}(ptr {array})')
+        code.do('ret ptr null')
+        code.lines.append(f'{made}:')
 
     def compute(self):
         code = self.code
+        code.lines.append('compute:')
         gravity = code.line(f'getelementptr i8, ptr {self.context}, i64 {8 * _GRAVITY}')
-        out = [self.load('ptr', array, _DATA) for array in self.arrays]
+        out = [code.line(f'load ptr, ptr {slot}') for slot in self.out]
         arguments = ', '.join(f'ptr {pointer}' for pointer in [*self.data, gravity, *out])
         sound = code.line(f'call i1 @{self.quantity.name}({arguments})')
-        if self.quantity.positive:
-            unsound, go_on = self.label(), self.label()
-            code.do(f'br i1 {sound}, label %{go_on}, label %{unsound}')
-            code.lines.append(f'{unsound}:')
-            self.release()
-            code.do('br label %slow')
-            code.lines.append(f'{go_on}:')
-
-    def answer(self):
-        code = self.code
-        if len(self.arrays) == 1:
-            code.do(f'ret ptr {self.arrays[0]}')
-            return
-        new_object, set_item = self.slot('new_object'), self.slot('set_item')
-        terms = code.line(f'call ptr {new_object}(ptr {self.slot("terms_type")}, '
-                          f'i64 {len(self.arrays)})')
-        failed, made = self.label(), self.label()
-        code.do(f'br i1 {self.equal("ptr", terms, "null")}, label %{failed}, label %{made}')
-        code.lines.append(f'{failed}:')
-        self.release()
-        code.do('ret ptr null')
-        code.lines.append(f'{made}:')
-        for index, array in enumerate(self.arrays):
-            code.line(f'call i32 {set_item}(ptr {terms}, i64 {index}, ptr {array})')
-        code.do(f'ret ptr {terms}')
+        answer = code.line(f'load ptr, ptr {self.answer}')
+        code.do(f'br i1 {sound}, label %answer, label %unsound')
+        code.lines.append('answer:')
+        code.do(f'ret ptr {answer}')
+        code.lines.append('unsound:')
+        code.do(f'call void {self.slot("release")}(ptr {answer})')
+        code.do('br label %slow')
 
     def fall_back(self):
         code = self.code
@@ -215,7 +257,7 @@ class _Context(np.ndarray):
         return np.array(values, dtype=np.int64).view(cls)
 
 
-def make_callable(code, name, fallback, documentation, terms_type, gravity):
+def make_callable(code, name, shapes, fallback, documentation, terms_type, gravity):
     """
     Return a builtin function that computes a quantity of one state.
 
@@ -224,6 +266,8 @@ def make_callable(code, name, fallback, documentation, terms_type, gravity):
     code : LoadedCode
         With the entry of this quantity.
     name : str
+    shapes : sequence of tuple of int
+        Of the outputs.
     fallback : callable
         Takes over what the entry does not take. It must not refer to the new function: Python
         would not find that circle.
@@ -248,15 +292,23 @@ def make_callable(code, name, fallback, documentation, terms_type, gravity):
         'set_item': _address(api.PyTuple_SetItem), 'release': _address(api.Py_DecRef),
         'call': _address(api.PyObject_Vectorcall)}
     bits = np.array(gravity, dtype=np.float64).view(np.int64)
-    context = _Context([*(addresses[slot] for slot in _SLOTS), *bits.tolist()])
+    answers = [_answer(shapes, terms_type) for _ in range(_ANSWERS)]
+    kept = [id(item) for answer in answers for item in
+            ([answer, *answer] if len(shapes) > 1 else [answer, answer])]
+    context = _Context([*(addresses[slot] for slot in _SLOTS), *bits.tolist(), *kept])
     text = f'{name}{inspect.signature(fallback)}\n--\n\n{inspect.cleandoc(documentation)}'
     method = _MethodDefinition(name.encode(), code.address(f'{name}_call'), _METHOD_FLAGS,
                                text.encode())
-    context.owned = (code, method, fallback, terms_type)
+    context.owned = (code, method, fallback, terms_type, answers)
     new = api.PyCFunction_NewEx
     new.argtypes = [ctypes.POINTER(_MethodDefinition), ctypes.py_object, ctypes.py_object]
     new.restype = ctypes.py_object
     return new(ctypes.byref(method), context, 'dynamics_node')
+
+
+def _answer(shapes, terms_type):
+    arrays = [np.empty(shape) for shape in shapes]
+    return terms_type(*arrays) if len(arrays) > 1 else arrays[0]
 
 
 def _address(function):

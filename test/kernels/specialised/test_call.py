@@ -1,5 +1,6 @@
 """The entry from Python: the plain case at once, every other case by the fallback."""
 
+from concurrent.futures import ThreadPoolExecutor
 import gc
 import inspect
 import resource
@@ -46,16 +47,80 @@ def test_the_plain_case_is_answered_by_machine_code(model, arguments, name):
         assert mine.dtype == theirs.dtype
         assert mine.shape == theirs.shape
         assert mine.flags.carray
-        assert mine.flags.owndata
         scale = max(1.0, np.abs(theirs).max())
         np.testing.assert_allclose(mine, theirs, rtol=0, atol=1e-12 * scale)
 
 
-def test_the_answer_is_new_each_time(model, arguments):
-    first = model.gravity_torque(arguments[0])
-    kept = first.copy()
-    model.gravity_torque(arguments[1])
-    np.testing.assert_array_equal(first, kept)
+WAYS_TO_HOLD = {
+    'answer': lambda D: D, 'view': lambda D: D[1:], 'transposed': lambda D: D.T,
+    'memoryview': memoryview, 'weak reference': weakref.ref,
+    'buffer': lambda D: np.frombuffer(D.data.cast('B'), dtype=float)}
+
+
+@pytest.mark.parametrize('way', WAYS_TO_HOLD)
+@pytest.mark.parametrize('kind', ['mass_matrix', 'dynamics'])
+def test_what_somebody_holds_is_never_overwritten(model, way, kind):
+    # More answers than are kept for use again, each held in some way.
+    rng, held = np.random.default_rng(3), []
+    for _ in range(12):
+        q, qd = rng.uniform(-1.0, 1.0, (2, 4))
+        answer = model.mass_matrix(q) if kind == 'mass_matrix' else model.dynamics(q, qd)[0]
+        held.append((WAYS_TO_HOLD[way](answer), answer.copy()))
+        del answer
+    for holder, expected in held:
+        now = holder() if way == 'weak reference' else np.asarray(holder)
+        if now is None:
+            continue
+        if way == 'view':
+            expected = expected[1:]
+        elif way == 'transposed':
+            expected = expected.T
+        np.testing.assert_array_equal(now.reshape(expected.shape), expected)
+
+
+def test_an_answer_that_nobody_holds_is_given_out_again(model, arguments):
+    places = {id(model.mass_matrix(arguments[0])) for _ in range(100)}
+    assert len(places) == 1
+    D = model.mass_matrix(arguments[0])
+    assert id(model.mass_matrix(arguments[1])) != id(D)
+
+
+def _resized(D):
+    D.resize((4, 2), refcheck=False)
+
+
+CHANGES = {
+    'read-only': lambda D: D.setflags(write=False), 'reshaped': lambda D: setattr(D, 'shape', 16),
+    'another type': lambda D: setattr(D, 'dtype', np.int64), 'smaller': _resized}
+
+
+@pytest.mark.filterwarnings('ignore:Setting the:DeprecationWarning')
+@pytest.mark.parametrize('change', CHANGES)
+def test_an_answer_that_was_changed_is_not_given_out_again(change):
+    model = RobotModel.from_urdf(random_urdf(11, joints=4, with_mimic=False, prismatic=0.0))
+    assert model.specialise()
+    q = np.array([0.1, 0.2, 0.3, 0.4])
+    expected = model._evaluation.mass_matrix(q)
+    for _ in range(8):
+        D = model.mass_matrix(q)
+        assert D.shape == (4, 4)
+        assert D.dtype == float
+        assert D.flags.carray
+        np.testing.assert_allclose(D, expected, rtol=0, atol=1e-12)
+        CHANGES[change](D)
+        del D
+
+
+def test_threads_do_not_get_each_others_answers(model):
+    states = np.random.default_rng(5).uniform(-1.0, 1.0, (8, 4))
+    expected = [model._evaluation.mass_matrix(q) for q in states]
+
+    def work(index):
+        return max(np.abs(model.mass_matrix(states[index]) - expected[index]).max()
+                   for _ in range(3000))
+
+    with ThreadPoolExecutor(8) as pool:
+        assert max(pool.map(work, range(8))) < 1e-12
 
 
 OTHER_SHAPES = {
