@@ -54,7 +54,7 @@ def arms():
 
     """
     package = distribution('example-robot-data')
-    public = Path(package.locate_file('cmeel.prefix/share/example-robot-data/robots'))
+    public = Path(str(package.locate_file('cmeel.prefix/share/example-robot-data/robots')))
     return [
         make_robot('UR5', (public / 'ur_description/urdf/ur5_robot.urdf').read_text()),
         make_robot('Panda', (public / 'panda_description/urdf/panda.urdf').read_text(),

@@ -70,7 +70,7 @@ def ratio_of(theirs, ours):
     return spread_of(np.asarray(theirs[:rounds]) / np.asarray(ours[:rounds]))
 
 
-def interleaved(candidates, rounds):
+def interleaved(candidates, rounds, slow_rounds=SLOW_ROUNDS):
     """
     Time candidates in turns, each round in another order.
 
@@ -83,6 +83,8 @@ def interleaved(candidates, rounds):
         Name → function and the arguments that its calls go through in turn.
     rounds : int
         At least 1.
+    slow_rounds : int
+        Rounds that candidates take part in whose single call is longer than SLOW_CALL_SECONDS.
 
     Returns
     -------
@@ -98,7 +100,7 @@ def interleaved(candidates, rounds):
             for k in range(len(names)):
                 name = names[(turn + k) % len(names)]
                 count, is_slow = calls[name]
-                if is_slow and turn >= SLOW_ROUNDS:
+                if is_slow and turn >= slow_rounds:
                     continue
                 function, arguments = candidates[name]
                 samples[name].append(time_of(function, arguments, count))

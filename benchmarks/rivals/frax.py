@@ -10,10 +10,10 @@ os.environ.setdefault('JAX_PLATFORMS', 'cpu')
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 os.environ.setdefault('XLA_FLAGS', '--xla_cpu_multi_thread_eigen=false')
 
-import frax  # noqa: E402
-import jax  # noqa: E402
+import frax
+import jax
 
-from ..quantities import Call  # noqa: E402
+from ..quantities import Call
 
 NAME = 'frax'
 PACKAGE = 'frax'

@@ -12,6 +12,9 @@ NOTE = ('It has no C: beside D it gives the vectors C q̇ and G. Its own contain
         'before the clock starts; reading results back as arrays is not counted. Its Python '
         'bindings have no forward dynamics.')
 
+# Its solvers refer to a chain that they do not keep alive.
+_CHAINS: list = []
+
 
 def chain_of(robot):
     """
@@ -40,6 +43,7 @@ def chain_of(robot):
         axis = frame.M * PyKDL.Vector(*tree.axis[k])
         joint = PyKDL.Joint(tree.body_names[k], frame.p, axis, PyKDL.Joint.RotAxis)
         chain.addSegment(PyKDL.Segment(joint, frame, _inertia(tree.inertia[k])))
+    _CHAINS.append(chain)
     return chain
 
 

@@ -1,10 +1,15 @@
 """This library, called as a user calls it: checks of the arguments included."""
 
+from xml.etree import ElementTree
+
 from ..quantities import Call
+from ..robots import ROOT
 
 NAME = 'dynamics_node'
 PACKAGE = 'dynamics_node'
-NOTE = 'Arguments are checked and copied, results are fresh arrays that stay the caller\'s.'
+# Of this checkout: a package of this name may be installed from somewhere else.
+VERSION = ElementTree.parse(ROOT / 'package.xml').findtext('version')
+NOTE = "Arguments are checked and copied, results are fresh arrays that stay the caller's."
 
 
 def calls(robot):

@@ -43,7 +43,7 @@ def robot_of(robot):
             I=np.trace(planes) * np.eye(3) - planes,
             parent=links[tree.parent[k]] if tree.parent[k] >= 0 else None))
     arm = roboticstoolbox.Robot(links, name=robot.name, gravity=robot.model.gravity)
-    arm.nofriction = lambda *_, **__: arm
+    vars(arm)['nofriction'] = lambda *_, **__: arm
     return arm
 
 

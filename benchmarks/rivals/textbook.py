@@ -2,10 +2,12 @@
 
 from dynamics_node.kernels import textbook
 
+from .ours import PACKAGE, VERSION
 from ..quantities import Call
 
+__all__ = ['NAME', 'NOTE', 'PACKAGE', 'VERSION', 'calls']
+
 NAME = 'textbook formulas'
-PACKAGE = 'dynamics_node'
 NOTE = ('The sums of docs/mathematics.md, section 3, in numpy, slow on purpose: products of 4x4 '
         'matrices and their derivatives.')
 
