@@ -14,6 +14,14 @@ NOTE = ('Written in Python. Its robot is built link by link with the fixed links
         'copy.')
 
 
+class FrictionlessRobot(roboticstoolbox.Robot):
+    """A robot that is its own copy without friction."""
+
+    def nofriction(self, *_, **__):
+        """Return the robot itself."""
+        return self
+
+
 def robot_of(robot):
     """
     Return the toolbox's robot with every axis along z.
@@ -42,9 +50,7 @@ def robot_of(robot):
             name=tree.body_names[k], m=mass, r=com,
             I=np.trace(planes) * np.eye(3) - planes,
             parent=links[tree.parent[k]] if tree.parent[k] >= 0 else None))
-    arm = roboticstoolbox.Robot(links, name=robot.name, gravity=robot.model.gravity)
-    vars(arm)['nofriction'] = lambda *_, **__: arm
-    return arm
+    return FrictionlessRobot(links, name=robot.name, gravity=robot.model.gravity)
 
 
 def calls(robot):
