@@ -1,6 +1,7 @@
 """docs/benchmarks.md, rendered from the results of one run."""
 
 from . import tables
+from .agreement import TOLERANCE
 from .batch import LOOP_PART
 from .growth import FITTED
 from .numbers import digits
@@ -44,11 +45,13 @@ def _head(results, picture):
 
 
 def _single(results):
+    joints = ', '.join(f'{name} ({count} joints)' for name, count in results.joints.items())
     parts = ['## One state at a time',
-             'Called from Python, on UR5, Panda and the arm of this repository. All libraries '
-             'get the same URDF text; the fingers of Panda and arm7 are fixed (their mass '
-             'stays), which leaves 6, 7 and 7 joints. Before it is timed, every call must give '
-             'the numbers of this library.']
+             f'Called from Python, on {joints}. All libraries get the same URDF text; the '
+             'fingers of Panda and of arm7, the arm of this repository, are fixed: their mass '
+             'stays. Before it is timed, every call must give the numbers of this library, up '
+             f'to {TOLERANCE:g} of the largest element; what gives less is named in the column '
+             '*gives*.']
     for quantity, title in QUANTITIES.items():
         parts += [f'### {title[0].upper()}{title[1:]}', tables.single_table(results, quantity)]
     return parts

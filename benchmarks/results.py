@@ -21,6 +21,8 @@ class Results:
     refused : list of str
         Sentences about what was not timed because its numbers differ.
     rounds : int
+    joints : dict of str to int
+        Number of joints of each arm.
     single : list of Row
     batch : list of BatchRow
     batch_count : int
@@ -41,6 +43,7 @@ class Results:
     missing: dict = field(default_factory=dict)
     refused: list = field(default_factory=list)
     rounds: int = 0
+    joints: dict = field(default_factory=dict)
     single: list = field(default_factory=list)
     batch: list = field(default_factory=list)
     batch_count: int = 0

@@ -1,5 +1,6 @@
 """One run: everything is measured, in this process unless a library needs another Python."""
 
+from dataclasses import replace
 from time import perf_counter
 
 from . import batch, growth, machine, memory, rivals, sections, single_call
@@ -46,6 +47,7 @@ def run(rounds, batch_count, sizes=growth.SIZES, names=rivals.FILES, kdl_python=
     if 'frax' in loaded:
         results.facts['JAX'] = rivals.version_of('jax') or 'version unknown'
     robots = arms()
+    results.joints = {robot.name: robot.n for robot in robots}
     fewer = max(3, rounds // 3)
     results.single, results.refused = single_call.measure(robots, loaded, rounds, say)
     if 'kdl' in missing and kdl_python.exists():
@@ -76,5 +78,7 @@ def _add_kdl(results, missing, python, robots, rounds, say):
         f'{answer["note"]} Debian builds it for its own Python only, so it ran in a process of '
         f'its own (Python {answer["python"]}, numpy {answer["numpy"]}) with this library beside '
         'it: its ratio is of that process.')
-    results.single += [row for row in answer['rows'] if row.library == name]
+    label = f'{name} (own process)'
+    results.single += [replace(row, library=label) for row in answer['rows']
+                       if row.library == name]
     results.refused += answer['refused']

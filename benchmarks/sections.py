@@ -2,8 +2,8 @@
 Sections that other files measure: the node, and starting up.
 
 Such a file is `benchmarks/NAME.py`. Its docstring becomes the text of the section, and its
-`measure()` returns a list of rows, each a dict of column title → text or number. It may raise
-ImportError where ROS is missing.
+`measure()` returns a list of rows, each a dict of column title → text or number. If it raises,
+for example because ROS is missing, the report says so.
 
 """
 
@@ -57,6 +57,6 @@ def measure(say=print):
         try:
             module = import_module(f'.{name}', __package__)
             sections[key] = Section(title, inspect.getdoc(module) or '', list(module.measure()))
-        except ImportError as error:
-            sections[key] = Section(title, f'Not measured: {error}.')
+        except Exception as error:  # one section must not cost the minutes of all others
+            sections[key] = Section(title, f'Not measured: {type(error).__name__}: {error}')
     return sections

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from .agreement import check, DifferentResultError
 from .quantities import QUANTITIES
 from .rivals import ours
-from .timing import interleaved
+from .timing import collector_off, interleaved
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,10 @@ def measure(robots, loaded, rounds, say=print):
                 calls[name] = rival.calls(robot)
             except (ValueError, RuntimeError) as error:
                 refused.append(f'{rival.NAME} does not take {robot.name}: {error}')
-        for quantity in QUANTITIES:
-            say(f'single calls: {robot.name}, {QUANTITIES[quantity]}')
-            rows += _measure_quantity(robot, quantity, calls, loaded, rounds, refused)
+        with collector_off():
+            for quantity in QUANTITIES:
+                say(f'single calls: {robot.name}, {QUANTITIES[quantity]}')
+                rows += _measure_quantity(robot, quantity, calls, loaded, rounds, refused)
     return rows, refused
 
 

@@ -132,9 +132,10 @@ def time_of(function, arguments, count):
 
 @contextmanager
 def collector_off():
-    """Collect garbage once, then keep the collector off, as `timeit` does."""
+    """Collect garbage, unless an outer block has, then keep the collector off as `timeit` does."""
     was_enabled = gc.isenabled()
-    gc.collect()
+    if was_enabled:
+        gc.collect()
     gc.disable()
     try:
         yield
