@@ -62,13 +62,12 @@ def measure(loaded, rounds, sizes=SIZES, say=print):
     libraries = {'dynamics_node': ours}
     if 'pinocchio' in loaded:
         libraries['Pinocchio'] = loaded['pinocchio']
-    rows: list[GrowthRow] = []
+    candidates: dict = {}
     refused: list[str] = []
     for shape, text_of in SHAPES.items():
         for joints in sizes:
             say(f'growth: {shape} of {joints} joints')
             robot = make_robot(f'{shape} of {joints}', text_of(joints), count=8)
-            candidates = {}
             for name, library in libraries.items():
                 call = library.calls(robot)['dynamics']
                 try:
@@ -76,16 +75,18 @@ def measure(loaded, rounds, sizes=SIZES, say=print):
                 except DifferentResultError as error:
                     refused.append(f'{name}, {robot.name}: {error}')
                     continue
-                candidates[name] = (call.run, call.arguments('dynamics', robot.states))
-            samples = interleaved(candidates, rounds)
-            rows += [GrowthRow(shape, joints, name, seconds, samples['dynamics_node'])
-                     for name, seconds in samples.items()]
-    return rows, refused
+                candidates[shape, joints, name] = (call.run,
+                                                   call.arguments('dynamics', robot.states))
+    say(f'growth: {rounds} rounds')
+    # All sizes in each round: what slows one round down then bends no curve.
+    samples = interleaved(candidates, rounds)
+    return [GrowthRow(shape, joints, name, seconds, samples[shape, joints, 'dynamics_node'])
+            for (shape, joints, name), seconds in samples.items()], refused
 
 
 def exponent(rows, shape, library):
     """
-    Return the slope of log(time) over log(joints) at the large end.
+    Return the slope of log(time) over log(joints) at the large end, fitted round by round.
 
     Parameters
     ----------
@@ -94,7 +95,7 @@ def exponent(rows, shape, library):
 
     Returns
     -------
-    float or None
+    Spread or None
         None if there are not two sizes.
 
     """
@@ -102,5 +103,8 @@ def exponent(rows, shape, library):
                     key=lambda row: row.joints)[-FITTED:]
     if len(chosen) < 2:
         return None
-    return float(np.polyfit(np.log([row.joints for row in chosen]),
-                            np.log([spread_of(row.seconds).median for row in chosen]), 1)[0])
+    # A call that is slow only at the largest size takes part in fewer rounds.
+    rounds = min(len(row.seconds) for row in chosen)
+    slopes = np.polyfit(np.log([row.joints for row in chosen]),
+                        np.log([row.seconds[:rounds] for row in chosen]), 1)[0]
+    return spread_of(slopes)

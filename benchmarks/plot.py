@@ -5,6 +5,7 @@ import matplotlib
 matplotlib.use('Agg')
 
 from matplotlib import pyplot
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from .growth import SHAPES
 from .numbers import digits
@@ -43,7 +44,7 @@ def _draw_single(results, axes):
         places = [libraries.index(row.library) + 0.2 * (1 - k) for row in chosen]
         _dots(axes, places, [spread_of(row.seconds) for row in chosen], 1e6, f'C{k}', robot)
     axes.set_yticks(range(len(libraries)), libraries)
-    axes.set_xlabel('µs per call; some libraries give less, see the table')
+    axes.set_xlabel('µs per call (some give less, see the table)')
     axes.set_title('D, C and G of one state, from Python', fontsize=10)
     axes.legend(fontsize=8)
 
@@ -57,6 +58,9 @@ def _draw_batch(results, axes):
               'C0' if row.library == OURS else 'C7')
     axes.set_yticks(range(len(rows)), labels)
     axes.set_ylim(-0.6, len(rows) - 0.4)
+    if rows:
+        medians = [1e6 * spread_of(row.seconds).median / results.batch_count for row in rows]
+        axes.set_xlim(min(medians) / 2.0, max(medians) * 2.0)
     axes.set_xlabel('µs per state')
     axes.set_title(f'{results.batch_count} states of a 7-joint arm in one call', fontsize=10)
 
@@ -90,5 +94,7 @@ def _dots(axes, places, spreads, scale, color, label=None):
         axes.annotate(digits(median), (median, place), (7, -3), textcoords='offset points',
                       fontsize=7)
     axes.set_xscale('log')
-    axes.margins(x=0.2)
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f'{value:g}'))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.margins(x=0.3)
     axes.grid(alpha=0.3, axis='x')

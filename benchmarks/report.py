@@ -73,15 +73,17 @@ def _batch(results):
 def _growth(results):
     return ['## Growth with the number of joints',
             'D, C and G of one state of generated robots, from the same URDF text for both. '
-            f'The exponent is fitted to the {FITTED} largest sizes. A dense D and C alone have '
-            'n² entries, whatever is computed.',
+            f'The exponent is fitted to the {FITTED} largest sizes, round by round. A dense D '
+            'and C alone have n² entries, whatever is computed.',
             tables.growth_table(results)]
 
 
 def _how(results):
+    fewer = len(results.batch[0].seconds) if results.batch else 0
     parts = ['## How it is measured',
-             f'In one process, garbage collector off, {results.rounds} rounds for single calls. '
-             'In each round every library gets its turn, in another order than before, for about '
+             f'In one process, garbage collector off, {results.rounds} rounds for single calls '
+             f'and growth, {fewer} for batches. In each round every library gets its turn, in '
+             'another order than before, for about '
              f'{1000 * SAMPLE_SECONDS:g} ms of calls through changing states; calls longer than '
              f'{1000 * SLOW_CALL_SECONDS:g} ms take part in {min(SLOW_ROUNDS, results.rounds)} '
              'rounds. Models, data and everything that a library lets one prepare are made '

@@ -18,7 +18,7 @@ def run(rounds, batch_count, sizes=growth.SIZES, names=rivals.FILES, kdl_python=
     Parameters
     ----------
     rounds : int
-        Interleaved rounds of single calls; batch and growth take a third, at least 3.
+        Interleaved rounds of single calls; the batch takes a third of them, at least 3.
     batch_count : int
         States in a batch.
     sizes : sequence of int
@@ -56,7 +56,7 @@ def run(rounds, batch_count, sizes=growth.SIZES, names=rivals.FILES, kdl_python=
     results.batch, refused = batch.measure(robots[-1], batch_count, loaded, fewer, say)
     results.refused += refused
     results.memory = memory.peak_besides_result(batch_count)
-    results.growth, refused = growth.measure(loaded, fewer, sizes, say)
+    results.growth, refused = growth.measure(loaded, rounds, sizes, say)
     results.refused += refused
     if with_sections:
         results.sections = sections.measure(say)

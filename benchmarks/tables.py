@@ -130,7 +130,7 @@ def growth_table(results):
     last = ['exponent']
     for shape in SHAPES:
         fits = [exponent(results.growth, shape, library) for library in libraries]
-        last += ['–' if fit is None else digits(fit) for fit in fits] + ['–']
+        last += ['–' if fit is None else ratio_text(fit) for fit in fits] + ['–']
     return table(titles, [*body, last])
 
 

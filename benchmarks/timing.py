@@ -79,7 +79,7 @@ def interleaved(candidates, rounds, slow_rounds=SLOW_ROUNDS):
 
     Parameters
     ----------
-    candidates : dict of str to (callable, sequence of tuple)
+    candidates : dict of hashable to (callable, sequence of tuple)
         Name → function and the arguments that its calls go through in turn.
     rounds : int
         At least 1.
@@ -88,12 +88,12 @@ def interleaved(candidates, rounds, slow_rounds=SLOW_ROUNDS):
 
     Returns
     -------
-    dict of str to list of float
-        Seconds per call, one number per round.
+    dict of hashable to list of float
+        Name → seconds per call, one number per round.
 
     """
     names = list(candidates)
-    samples: dict[str, list[float]] = {name: [] for name in names}
+    samples: dict = {name: [] for name in names}
     with collector_off():
         calls = {name: _calibrate(*candidates[name]) for name in names}
         for turn in range(rounds):
