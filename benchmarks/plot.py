@@ -5,7 +5,7 @@ import matplotlib
 matplotlib.use('Agg')
 
 from matplotlib import pyplot
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from .growth import SHAPES
 from .numbers import digits
@@ -61,6 +61,9 @@ def _draw_batch(results, axes):
     if rows:
         medians = [1e6 * spread_of(row.seconds).median / results.batch_count for row in rows]
         axes.set_xlim(min(medians) / 2.0, max(medians) * 2.0)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f'{value:g}'))
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel('µs per state')
     axes.set_title(f'{results.batch_count} states of a 7-joint arm in one call', fontsize=10)
 
@@ -90,11 +93,9 @@ def _dots(axes, places, spreads, scale, color, label=None):
              [scale * (spread.high - spread.median) for spread in spreads]]
     axes.errorbar(medians, places, xerr=sides, fmt='o', markersize=5, capsize=2, color=color,
                   label=label)
-    for median, place in zip(medians, places, strict=True):
-        axes.annotate(digits(median), (median, place), (7, -3), textcoords='offset points',
-                      fontsize=7)
+    for median, spread, place in zip(medians, spreads, places, strict=True):
+        axes.annotate(digits(median), (scale * spread.high, place), (6, -3),
+                      textcoords='offset points', fontsize=7)
     axes.set_xscale('log')
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f'{value:g}'))
-    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.margins(x=0.3)
     axes.grid(alpha=0.3, axis='x')

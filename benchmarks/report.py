@@ -6,7 +6,8 @@ from .batch import LOOP_PART
 from .growth import FITTED
 from .numbers import digits
 from .quantities import QUANTITIES
-from .timing import SAMPLE_SECONDS, SLOW_CALL_SECONDS, SLOW_ROUNDS
+from .single_call import PASSES, SLOW_ROUNDS
+from .timing import SAMPLE_SECONDS, SLOW_CALL_SECONDS
 
 
 def render(results, picture):
@@ -84,9 +85,10 @@ def _how(results):
              f'In one process, garbage collector off, {results.rounds} rounds for single calls '
              f'and growth, {fewer} for batches. In each round every library gets its turn, in '
              'another order than before, for about '
-             f'{1000 * SAMPLE_SECONDS:g} ms of calls through changing states; calls longer than '
-             f'{1000 * SLOW_CALL_SECONDS:g} ms take part in {min(SLOW_ROUNDS, results.rounds)} '
-             'rounds. Models, data and everything that a library lets one prepare are made '
+             f'{1000 * SAMPLE_SECONDS:g} ms of calls through changing states. Single calls are '
+             f'measured in {PASSES} passes over all robots and quantities; calls longer than '
+             f'{1000 * SLOW_CALL_SECONDS:g} ms take part in the first {SLOW_ROUNDS} rounds of '
+             'each. Models, data and everything that a library lets one prepare are made '
              'before. What a call is made of:',
              tables.calls_table(results),
              '\n'.join(f'- **{name}**: {note}' for name, note in results.notes.items())]

@@ -7,6 +7,12 @@ from .quantities import QUANTITIES
 from .rivals import ours
 from .timing import collector_off, interleaved
 
+# Every quantity gets its turn in each of so many passes over all of them, so that a slow minute
+# of the machine does not hit one robot alone.
+PASSES = 3
+# Rounds of a pass that take part with calls that are slow.
+SLOW_ROUNDS = 2
+
 
 @dataclass(frozen=True)
 class Row:
@@ -23,7 +29,7 @@ class Row:
     seconds : list of float
         Per call, one number per round.
     ours : list of float
-        This library's, same rounds, same process.
+        This library's in the same rounds of the same process.
     error : float
         Largest difference from this library's result, as a part of the largest element.
 
@@ -60,36 +66,55 @@ def measure(robots, loaded, rounds, say=print):
         A sentence for each library and quantity that was not timed because it differs or fails.
 
     """
-    rows: list[Row] = []
     refused: list[str] = []
+    groups = []
     for robot in robots:
-        calls = {'ours': ours.calls(robot)}
-        for name, rival in loaded.items():
-            try:
-                calls[name] = rival.calls(robot)
-            except (ValueError, RuntimeError) as error:
-                refused.append(f'{rival.NAME} does not take {robot.name}: {error}')
+        say(f'single calls: preparing {robot.name}')
+        offered = _offered(robot, loaded, refused)
+        groups += [_Group(robot, quantity, offered, refused) for quantity in QUANTITIES]
+    for number, part in enumerate(_parts(rounds), start=1):
+        say(f'single calls: {part} rounds, pass {number}')
         with collector_off():
-            for quantity in QUANTITIES:
-                say(f'single calls: {robot.name}, {QUANTITIES[quantity]}')
-                rows += _measure_quantity(robot, quantity, calls, loaded, rounds, refused)
-    return rows, refused
+            for group in groups:
+                group.measure(part)
+    return [row for group in groups for row in group.rows.values()], refused
 
 
-def _measure_quantity(robot, quantity, calls, loaded, rounds, refused):
-    names = {name: rival.NAME for name, rival in loaded.items()} | {'ours': ours.NAME}
-    candidates, errors = {}, {}
-    for name, offered in calls.items():
-        call = offered.get(quantity)
-        if call is None:
-            continue
+def _parts(rounds):
+    # The rounds of each pass: 21 are 7 + 7 + 7.
+    parts = [rounds // PASSES + (k < rounds % PASSES) for k in range(PASSES)]
+    return [part for part in parts if part]
+
+
+def _offered(robot, loaded, refused):
+    calls = {ours.NAME: ours.calls(robot)}
+    for rival in loaded.values():
         try:
-            errors[name] = check(robot, quantity, call)
-        except DifferentResultError as error:
-            refused.append(f'{names[name]}, {robot.name}, {QUANTITIES[quantity]}: {error}')
-            continue
-        candidates[name] = (call.run, call.arguments(quantity, robot.states))
-    samples = interleaved(candidates, rounds)
-    return [Row(robot.name, quantity, names[name], calls[name][quantity].parts,
-                calls[name][quantity].how, seconds, samples['ours'], errors[name])
-            for name, seconds in samples.items()]
+            calls[rival.NAME] = rival.calls(robot)
+        except (ValueError, RuntimeError) as error:
+            refused.append(f'{rival.NAME} does not take {robot.name}: {error}')
+    return calls
+
+
+class _Group:
+    # All libraries for one quantity of one robot: what is interleaved.
+    def __init__(self, robot, quantity, offered, refused):
+        self.candidates, self.rows = {}, {}
+        for name, calls in offered.items():
+            call = calls.get(quantity)
+            if call is None:
+                continue
+            try:
+                error = check(robot, quantity, call)
+            except DifferentResultError as reason:
+                refused.append(f'{name}, {robot.name}, {QUANTITIES[quantity]}: {reason}')
+                continue
+            self.candidates[name] = (call.run, call.arguments(quantity, robot.states))
+            self.rows[name] = Row(robot.name, quantity, name, call.parts, call.how, [], [], error)
+
+    def measure(self, rounds):
+        samples = interleaved(self.candidates, rounds, SLOW_ROUNDS)
+        for name, seconds in samples.items():
+            self.rows[name].seconds.extend(seconds)
+            # A slow library takes part in the first rounds: ours of the same ones.
+            self.rows[name].ours.extend(samples[ours.NAME][:len(seconds)])

@@ -184,6 +184,25 @@ def test_rounds_are_interleaved_and_begin_with_another_candidate(bench, monkeypa
     assert samples == {'a': [1.0] * 3, 'b': [1.0] * 3}
 
 
+def test_a_slow_library_is_divided_by_ours_of_the_same_rounds(bench, monkeypatch):
+    # Our 7 rounds are 3 + 2 + 2; a slow one takes part in the first 2 of each pass.
+    turns = iter((3, 2, 2))
+    clock = iter(range(7))
+
+    def measured(candidates, rounds, slow_rounds):
+        assert rounds == next(turns)
+        mine = [float(next(clock)) for _ in range(rounds)]
+        return {name: mine if name == 'dynamics_node' else mine[:slow_rounds]
+                for name in candidates}
+
+    monkeypatch.setattr(bench.single_call, 'interleaved', measured)
+    monkeypatch.setattr(bench.single_call, 'QUANTITIES', {'gravity': 'G'})
+    rows, _ = bench.single_call.measure([bench.robots.arm7()], {'pinocchio': bench.pinocchio}, 7,
+                                        say=lambda text: None)
+    assert [row.seconds for row in rows] == [[0, 1, 2, 3, 4, 5, 6], [0, 1, 3, 4, 5, 6]]
+    assert rows[1].ours == rows[1].seconds
+
+
 def test_the_collector_is_off_while_the_clock_runs(bench):
     seen = []
     bench.timing.interleaved({'a': (lambda: seen.append(gc.isenabled()), [()])}, rounds=1)
