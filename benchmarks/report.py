@@ -42,7 +42,8 @@ def _head(results, picture):
         f'![Times of all libraries on logarithmic axes]({picture})',
         'A ratio is the time of a library divided by that of this one, `dynamics_node`: above 1 '
         'this one is faster. It is the median over interleaved rounds, the quartiles in '
-        'brackets. Times are medians.', facts, libraries])
+        'brackets. Times are medians; where others use the machine too they drift from table to '
+        'table, and ratios, which are taken within a round, much less.', facts, libraries])
 
 
 def _single(results):
