@@ -2,7 +2,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint build shell lock clean
+.PHONY: help demo test bench lint build shell lock clean
 
 # ROBOT, VIEW and PYTHON reach the scripts through the environment.
 
@@ -14,6 +14,9 @@ demo: ## A simulated arm held by the node; ROBOT=path.urdf: another robot, VIEW=
 
 test: ## All tests; ARGS='...': arguments of pytest
 	@bash scripts/test.sh $(ARGS)
+
+bench: ## Speed beside other libraries, into docs/benchmarks.md; ARGS='...': see python -m benchmarks -h
+	@bash scripts/bench.sh $(ARGS)
 
 lint: ## ruff and mypy
 	@bash scripts/lint.sh

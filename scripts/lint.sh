@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The linters: ruff on everything, mypy on the package. Runs both, fails if one does.
+# The linters: ruff on everything, mypy on the package and the benchmarks. Runs both, fails if one does.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bash scripts/setup.sh test
@@ -8,5 +8,5 @@ source scripts/env.sh
 
 code=0
 ruff check . || code=1
-python -m mypy dynamics_node || code=1
+python -m mypy dynamics_node benchmarks || code=1
 exit "$code"

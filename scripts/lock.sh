@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Renew the pins: requirements/*.in -> requirements/lock/*.txt, one per Python version.
+# Renew the pins: requirements/*.in (but bench.in, which has its own) ->
+# requirements/lock/*.txt, one per Python version.
 #
 # All purposes are resolved together, so that the demo's and the tests' packages never change
 # the version of what runs on the robot. Python 3.12 has a second lock, without the wheels of
@@ -45,6 +46,8 @@ lock() {
 everything=()
 without_ros=()
 for file in requirements/*.in; do
+    # Has its own pins: its packages are large, and optional.
+    [[ $file != requirements/bench.in ]] || continue
     everything+=(-r "$file")
     [[ $file == requirements/ros.in ]] || without_ros+=(-r "$file")
 done

@@ -3,14 +3,15 @@
 #
 #     scripts/setup.sh demo    what `make demo` needs
 #     scripts/setup.sh test    that, and what `make test` and `make lint` need
+#     scripts/setup.sh bench   that, and what `make bench` measures beside
 #
 # Says nothing if nothing is to be done. A step is done again when its inputs have changed.
 set -euo pipefail
 
-purpose=${1:?expected demo or test}
+purpose=${1:?expected demo, test or bench}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 dynamics_root=$PWD
-for part in messages stamps progress ros_mode find_python preflight steps; do
+for part in messages stamps progress ros_mode find_python preflight steps rivals; do
     # shellcheck source=/dev/null
     source "scripts/lib/$part.sh"
 done

@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.mark.parametrize('command', [
     ('ruff', 'check', '.'),
-    ('mypy', 'dynamics_node'),
+    ('mypy', 'dynamics_node', 'benchmarks'),
 ], ids=lambda command: command[0])
 def test_a_linter_finds_nothing(command):
     run = subprocess.run([sys.executable, '-m', *command], cwd=ROOT, capture_output=True,

@@ -14,13 +14,15 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCRIPTS = sorted((ROOT / 'scripts').rglob('*.sh')) + [ROOT / '.ci' / 'run']
-INPUTS = sorted((ROOT / 'requirements').glob('*.in'))
+# The packages of bench.in are optional, and pinned there.
+BENCH = ROOT / 'requirements' / 'bench.in'
+INPUTS = sorted(set((ROOT / 'requirements').glob('*.in')) - {BENCH})
 LOCKS = sorted((ROOT / 'requirements' / 'lock').glob('*.txt'))
 LOCKS_WITH_ROS = [path for path in LOCKS if 'numpy1' not in path.name]
 PREAMBLE = """
 set -euo pipefail
 cd "$1"
-for part in messages stamps progress ros_mode find_python preflight steps; do
+for part in messages stamps progress ros_mode find_python preflight steps rivals; do
     source "scripts/lib/$part.sh"
 done
 """
@@ -104,6 +106,27 @@ def test_a_lock_pins_every_package_that_is_asked_for(lock, inputs):
     if inputs.stem == 'ros' and lock not in LOCKS_WITH_ROS:
         pytest.skip('this lock stands on a sourced ROS 2')
     assert set(names_in(inputs)) <= set(pins_in(lock))
+
+
+def test_what_is_measured_beside_is_pinned_where_it_is_named():
+    lines = run_bash('rival_requirements').stdout.splitlines()
+    assert [re.split('[=;]', line)[0] for line in lines] == [
+        'drake', 'roboticstoolbox-python', 'jax', 'jaxlib', 'frax']
+    for line in lines:
+        assert re.match(r'[a-z-]+==[0-9.]+(;|$)', line), line
+
+
+def test_only_the_benchmarks_install_what_is_measured_beside(tmp_path):
+    # A copy, because plan_steps looks at what is installed here.
+    for name in ('scripts', 'requirements', 'dynamics_interfaces', 'dynamics_node', 'launch',
+                 'config', 'resource', 'setup.py', 'setup.cfg', 'package.xml'):
+        (tmp_path / name).symlink_to(ROOT / name)
+    planned = {purpose: run_bash(
+        f'dynamics_root=$PWD; mode=wheels; plan_steps {purpose}; echo "${{pending[*]}}"',
+        tmp_path).stdout.split() for purpose in ('demo', 'test', 'bench')}
+    assert 'packages' in planned['demo']
+    assert planned['test'] == planned['demo']
+    assert planned['bench'] == planned['test'] + ['rivals']
 
 
 @pytest.mark.parametrize('lock', LOCKS, ids=lambda path: path.stem)

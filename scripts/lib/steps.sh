@@ -8,10 +8,15 @@ requirement_files() {
     local name
     local -a names=(build runtime demo)
     [[ $mode == wheels ]] && names+=(ros)
-    [[ $1 == test ]] && names+=(test)
+    needs_test_packages "$1" && names+=(test)
     for name in "${names[@]}"; do
         echo "requirements/$name.in"
     done
+}
+
+# needs_test_packages PURPOSE: the benchmarks measure beside the oracle of the tests.
+needs_test_packages() {
+    [[ $1 == test || $1 == bench ]]
 }
 
 # compute_keys: the inputs of all steps as they are now.
@@ -23,6 +28,7 @@ compute_keys() {
     readarray -t files < <(requirement_files demo)
     key_demo=$(key_of "$key_venv" -- "${files[@]}" requirements/lock/*)
     key_test=$(key_of "$key_demo" -- requirements/test.in)
+    key_rivals=$(key_of "$key_test" -- requirements/bench.in scripts/lib/rivals.sh)
 
     readarray -t files < <(find dynamics_interfaces -type f | LC_ALL=C sort)
     key_interfaces=$(key_of "$key_demo" -- "${files[@]}")
@@ -53,7 +59,7 @@ plan_steps() {
         pending+=(venv)
     fi
     if [[ $all_again ]] || ! stamp_is demo "$key_demo" ||
-        { [[ $1 == test ]] && ! stamp_is test "$key_test"; }; then
+        { needs_test_packages "$1" && ! stamp_is test "$key_test"; }; then
         pending+=(packages)
     fi
     if [[ $all_again ]] || ! stamp_is interfaces "$key_interfaces"; then
@@ -65,6 +71,9 @@ plan_steps() {
     if [[ -f dynamics_node/kernels/warm_up.py ]] &&
         { [[ $all_again ]] || ! stamp_is kernels "$key_kernels"; }; then
         pending+=(kernels)
+    fi
+    if [[ $1 == bench ]] && { [[ $all_again ]] || ! stamp_is rivals "$key_rivals"; }; then
+        pending+=(rivals)
     fi
 }
 
@@ -115,7 +124,7 @@ do_packages() {
     packages_before=$(installed_packages)
     describe_progress=count_packages run_step "$title" install_packages
     write_stamp demo "$key_demo"
-    if [[ $purpose == test ]]; then
+    if needs_test_packages "$purpose"; then
         write_stamp test "$key_test"
     fi
 }

@@ -1,0 +1,77 @@
+"""Before the clock starts: does a library compute the same numbers as this one."""
+
+import numpy as np
+
+# Of the largest element of D, C, G, ...: the measured differences are about 1e-15.
+TOLERANCE = 1e-8
+CHECKED_STATES = 4
+
+
+class DifferentResultError(Exception):
+    """A library returns other numbers than this one, so its time would mean nothing."""
+
+
+def expected_parts(robot, quantity, state):
+    """
+    Return what the parts of a call's result must be, by this library.
+
+    Parameters
+    ----------
+    robot : Robot
+    quantity : str
+        A key of QUANTITIES.
+    state : tuple of numpy.ndarray
+        q, q̇ and q̈ or τ, shape (n,) each.
+
+    Returns
+    -------
+    dict of str to numpy.ndarray
+
+    """
+    q, qd, third = state
+    D, C, G = robot.model.dynamics(q, qd)
+    if quantity == 'inverse':
+        return {'tau': D @ third + C @ qd + G}
+    if quantity == 'forward':
+        return {'qdd': np.linalg.solve(D, third - C @ qd - G)}
+    return {'D': D, 'C': C, 'G': G, 'C qd': C @ qd, 'C qd + G': C @ qd + G}
+
+
+def check(robot, quantity, call):
+    """
+    Hold a call's results against this library's.
+
+    Parameters
+    ----------
+    robot : Robot
+    quantity : str
+        A key of QUANTITIES.
+    call : Call
+
+    Returns
+    -------
+    float
+        The largest difference, as a part of the largest element.
+
+    Raises
+    ------
+    DifferentResultError
+        If a difference is above TOLERANCE, or not a number.
+
+    """
+    worst = 0.0
+    states = robot.states[:CHECKED_STATES]
+    for state, arguments in zip(states, call.arguments(quantity, states), strict=True):
+        expected = expected_parts(robot, quantity, state)
+        for part, value in zip(call.parts, call.run(*arguments), strict=True):
+            array = call.array(value)
+            if array.shape != expected[part].shape:
+                raise DifferentResultError(
+                    f'{part}: expected shape {expected[part].shape}, got {array.shape}')
+            error = np.abs(array - expected[part]).max() / np.abs(expected[part]).max()
+            if not error <= TOLERANCE:
+                raise DifferentResultError(
+                    f'{part}: expected a difference of at most {TOLERANCE:g} of the largest '
+                    f'element, got {error:.2g}')
+            worst = max(worst, float(error))
+    return worst

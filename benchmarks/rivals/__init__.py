@@ -1,0 +1,57 @@
+"""
+One file per library. Each has NAME, PACKAGE, NOTE and `calls(robot)`.
+
+A file imports its library at the top; one that cannot be imported is reported as missing, with
+the reason, and the measurements go on without it.
+
+"""
+
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+
+# In the order of the report.
+FILES = ('pinocchio', 'mujoco', 'drake', 'kdl', 'roboticstoolbox', 'frax', 'textbook')
+
+
+def load(names=FILES):
+    """
+    Import the libraries that are installed.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Files of this folder.
+
+    Returns
+    -------
+    loaded : dict of str to module
+    missing : dict of str to str
+        Name → why it could not be imported.
+
+    """
+    loaded, missing = {}, {}
+    for name in names:
+        try:
+            loaded[name] = import_module(f'.{name}', __name__)
+        except ImportError as error:
+            missing[name] = ' '.join(str(error).split())
+    return loaded, missing
+
+
+def version_of(package):
+    """
+    Return the version of an installed package, or None.
+
+    Parameters
+    ----------
+    package : str
+
+    Returns
+    -------
+    str or None
+
+    """
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None

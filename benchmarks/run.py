@@ -1,0 +1,84 @@
+"""One run: everything is measured, in this process unless a library needs another Python."""
+
+from dataclasses import replace
+from time import perf_counter
+
+from . import batch, growth, machine, memory, rivals, sections, single_call
+from .beside import KDL_PYTHON, measure_beside
+from .results import Results
+from .rivals import ours
+from .robots import arms
+
+
+def run(rounds, batch_count, sizes=growth.SIZES, names=rivals.FILES, kdl_python=KDL_PYTHON,
+        with_sections=True, say=print):
+    """
+    Measure everything.
+
+    Parameters
+    ----------
+    rounds : int
+        Interleaved rounds of single calls; the batch takes a third of them, at least 3.
+    batch_count : int
+        States in a batch.
+    sizes : sequence of int
+        Numbers of joints of the generated robots.
+    names : sequence of str
+        Files in `rivals/`.
+    kdl_python : pathlib.Path
+        An interpreter that has PyKDL, for where this one has not.
+    with_sections : bool
+        Whether other files measure their sections.
+    say : callable
+        Told about the progress.
+
+    Returns
+    -------
+    Results
+
+    """
+    begin = perf_counter()
+    results = Results(machine.describe(), rounds=rounds, batch_count=batch_count)
+    loaded, missing = rivals.load(names)
+    for module in (ours, *loaded.values()):
+        version = getattr(module, 'VERSION', None) or rivals.version_of(module.PACKAGE)
+        results.libraries[module.NAME] = version or 'version unknown'
+        results.notes[module.NAME] = module.NOTE
+    if 'frax' in loaded:
+        results.facts['JAX'] = rivals.version_of('jax') or 'version unknown'
+    robots = arms()
+    results.joints = {robot.name: robot.n for robot in robots}
+    fewer = max(3, rounds // 3)
+    results.single, results.refused = single_call.measure(robots, loaded, rounds, say)
+    if 'kdl' in missing and kdl_python.exists():
+        _add_kdl(results, missing, kdl_python, robots, rounds, say)
+    results.missing = missing
+    results.batch, refused = batch.measure(robots[-1], batch_count, loaded, fewer, say)
+    results.refused += refused
+    results.memory = memory.peak_besides_result(batch_count)
+    results.growth, refused = growth.measure(loaded, rounds, sizes, say)
+    results.refused += refused
+    if with_sections:
+        results.sections = sections.measure(say)
+    results.seconds = perf_counter() - begin
+    return results
+
+
+def _add_kdl(results, missing, python, robots, rounds, say):
+    say('single calls: PyKDL, in a process of its own')
+    try:
+        answer = measure_beside('kdl', python, robots, rounds)
+    except RuntimeError as error:
+        missing['kdl'] = str(error)
+        return
+    del missing['kdl']
+    name = answer['name']
+    results.libraries[name] = answer['version']
+    results.notes[name] = (
+        f'{answer["note"]} Debian builds it for its own Python only, so it ran in a process of '
+        f'its own (Python {answer["python"]}, numpy {answer["numpy"]}) with this library beside '
+        'it: its ratio is of that process.')
+    label = f'{name} (own process)'
+    results.single += [replace(row, library=label) for row in answer['rows']
+                       if row.library == name]
+    results.refused += answer['refused']
