@@ -1,7 +1,6 @@
 """Arrays in, arrays out: checks, batches, threads, and which kernel computes."""
 
 from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
 import math
 import os
 
@@ -12,8 +11,8 @@ from ..errors import ArgumentError, SingularMassMatrixError
 from ..kernels import closed_form
 from ..kernels.specialised import are_ordinary
 
-# States that one thread computes in one go: enough to make the call cheap, few enough to stay in
-# its cache. Only batches of several such pieces are worth a second thread.
+# States that one thread computes in one go: enough to make the call cheap, few enough to share
+# the work evenly. Only more than one piece is worth a second thread.
 _PIECE = 1024
 
 _FLOAT = np.dtype(np.float64)
@@ -59,6 +58,7 @@ class Evaluation:
         self._gravity = packed[1][-1, :3].copy()
         self._joint_names = joint_names
         self._n = len(joint_names)
+        self._shapes = {name: shapes(self._n) for name, shapes in SHAPES.items()}
 
     def states(self, **values):
         """
@@ -82,22 +82,26 @@ class Evaluation:
 
         """
         arrays = [_plain(value) for value in values.values()]
-        for name, array in zip(values, arrays, strict=True):
+        if all(array.shape == (self._n,) for array in arrays):
+            return (), [array[None] for array in arrays]
+        shape = arrays[0].shape
+        if any(array.shape != shape for array in arrays) or shape[-1:] != (self._n,):
+            arrays = self._fitted(values, arrays)
+            shape = arrays[0].shape
+        count = math.prod(shape[:-1])
+        return shape[:-1], [array.reshape(count, self._n) for array in arrays]
+
+    def _fitted(self, names, arrays):
+        for name, array in zip(names, arrays, strict=True):
             if array.shape[-1:] != (self._n,):
                 raise ArgumentError(f'{name}: expected shape (..., {self._n}) for joints '
                                     f'{list(self._joint_names)}, got {array.shape}')
-        lead = arrays[0].shape[:-1]
-        if any(array.shape[:-1] != lead for array in arrays):
-            arrays = _broadcast(values, arrays)
-            lead = arrays[0].shape[:-1]
-        count = math.prod(lead)
-        return lead, [array.reshape(count, self._n) for array in arrays]
+        return _broadcast(names, arrays)
 
     def dynamics(self, q, qd, *, out=None, threads=None):
         """Return D, C and G, each with the batch axes of q and qd first."""
         lead, arrays = self.states(q=q, qd=qd)
-        return DynamicsTerms(*self._run('dynamics', closed_form.dynamics, lead, ('q', 'qd'),
-                                        arrays, out, threads))
+        return DynamicsTerms(*self._run('dynamics', lead, arrays, out, threads))
 
     def coriolis_matrix(self, q, qd, *, threads=None):
         """Return C with the batch axes of q and qd first."""
@@ -106,20 +110,17 @@ class Evaluation:
     def mass_matrix(self, q, *, out=None, threads=None):
         """Return D with the batch axes of q first."""
         lead, arrays = self.states(q=q)
-        return self._run('mass_matrix', closed_form.mass_matrix, lead, ('q',), arrays,
-                         _one(out), threads)[0]
+        return self._run('mass_matrix', lead, arrays, _one(out), threads)[0]
 
     def gravity_torque(self, q, *, out=None, threads=None):
         """Return G with the batch axes of q first."""
         lead, arrays = self.states(q=q)
-        return self._run('gravity_torque', _gravity_torque, lead, ('q',), arrays, _one(out),
-                         threads)[0]
+        return self._run('gravity_torque', lead, arrays, _one(out), threads)[0]
 
     def inverse_dynamics(self, q, qd, qdd, *, out=None, threads=None):
         """Return the efforts of a motion with the batch axes of its arguments first."""
         lead, arrays = self.states(q=q, qd=qd, qdd=qdd)
-        return self._run('inverse_dynamics', closed_form.inverse_dynamics, lead,
-                         ('q', 'qd', 'qdd'), arrays, _one(out), threads)[0]
+        return self._run('inverse_dynamics', lead, arrays, _one(out), threads)[0]
 
     def forward_dynamics(self, q, qd, tau, *, threads=None):
         """Return the accelerations that efforts cause, by a Cholesky factorisation of D."""
@@ -146,48 +147,63 @@ class Evaluation:
         closed_form.gravity_torque(*self.packed, q, G, V)
         return V.reshape(lead)
 
-    def _run(self, name, kernel, lead, inputs, arrays, out, threads):
-        count, shapes = len(arrays[0]), SHAPES[name](self._n)
-        results = [np.empty((*lead, *shape)) for shape in shapes] if out is None else list(out)
-        if out is not None:
-            _check_out(results, [(*lead, *shape) for shape in shapes])
-        outputs = [result.reshape(count, *shape)
-                   for result, shape in zip(results, shapes, strict=True)]
+    def _run(self, name, lead, arrays, out, threads):
+        count, shapes = len(arrays[0]), self._shapes[name]
+        if out is None:
+            outputs = [np.empty((count, *shape)) for shape in shapes]
+        else:
+            _check_out(out, [(*lead, *shape) for shape in shapes])
+            outputs = [array.reshape(count, *shape)
+                       for array, shape in zip(out, shapes, strict=True)]
         code = self.specialisation.code
         if code is None:
             self.specialisation.count(count)
+        if count <= _PIECE:
+            self._compute(code, name, arrays, outputs)
+        else:
+            def compute(arrays, outputs):
+                self._compute(code, name, arrays, outputs)
 
-        def piece(begin, end):
-            mine = [array[begin:end] for array in arrays]
-            answers = [output[begin:end] for output in outputs]
-            if (code is not None and end - begin >= code.lanes
-                    and are_ordinary(mine, inputs)):
-                code.batch(name, self._gravity, mine, answers)
-            else:
-                kernel(*self.packed, *mine, *answers)
+            _in_pieces(compute, arrays, outputs, count, threads)
+        if out is not None:
+            return out
+        if not lead:
+            return [output[0] for output in outputs]
+        return [output.reshape(*lead, *shape)
+                for output, shape in zip(outputs, shapes, strict=True)]
 
-        _in_pieces(piece, count, threads)
-        return results
+    def _compute(self, code, name, arrays, outputs):
+        if code is not None and len(arrays[0]) >= code.lanes and are_ordinary(name, arrays):
+            code.batch(name, self._gravity, arrays, outputs)
+        else:
+            _KERNELS[name](*self.packed, *arrays, *outputs)
 
 
 def _gravity_torque(structure, numbers, q, G):
     closed_form.gravity_torque(structure, numbers, q, G, np.empty(len(q)))
 
 
-def _in_pieces(piece, count, threads):
-    # Calls piece(begin, end) for all of 0..count, in pieces of about equal size.
-    pieces = max(1, math.ceil(count / _PIECE))
+_KERNELS = {'dynamics': closed_form.dynamics, 'mass_matrix': closed_form.mass_matrix,
+            'gravity_torque': _gravity_torque, 'inverse_dynamics': closed_form.inverse_dynamics}
+
+
+def _in_pieces(compute, arrays, outputs, count, threads):
+    # compute(rows of the arrays, rows of the outputs) in pieces of about equal size.
+    pieces = math.ceil(count / _PIECE)
     if threads is None:
         threads = len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else 1
-    threads = min(threads, pieces)
-    bounds = [count * i // pieces for i in range(pieces + 1)]
+
+    def piece(i):
+        rows = slice(count * i // pieces, count * (i + 1) // pieces)
+        compute([array[rows] for array in arrays], [output[rows] for output in outputs])
+
     if threads <= 1:
-        for begin, end in pairwise(bounds):
-            piece(begin, end)
-        return
-    with ThreadPoolExecutor(threads) as pool:
-        for _ in pool.map(piece, bounds[:-1], bounds[1:]):
-            pass
+        for i in range(pieces):
+            piece(i)
+    else:
+        with ThreadPoolExecutor(min(threads, pieces)) as pool:
+            # The list passes on what a piece has raised.
+            list(pool.map(piece, range(pieces)))
 
 
 def _one(out):
@@ -195,6 +211,8 @@ def _one(out):
 
 
 def _check_out(arrays, shapes):
+    if len(arrays) != len(shapes):
+        raise ArgumentError(f'out: expected {len(shapes)} arrays, got {len(arrays)}')
     for array in arrays:
         if not (type(array) is np.ndarray and array.dtype is _FLOAT and array.flags.carray):
             raise ArgumentError('out: expected writeable, contiguous float64 arrays, got '

@@ -38,7 +38,8 @@ class Specialisation:
         self._lock = threading.Lock()
         self._states = 0
         self._thread = None
-        if call_is_possible():
+        self._wanted = specialised.is_wanted() and specialised.is_supported()
+        if self._wanted:
             self.code = specialised.from_disk(structure, numbers)
 
     def attach(self, model):
@@ -59,13 +60,13 @@ class Specialisation:
     def count(self, states):
         """Notice that the general kernel has computed so many states; begin if it is often."""
         self._states += states
-        if self._states >= _WORTH_WHILE and self._thread is None:
+        if self._states >= _WORTH_WHILE and self._wanted and self._thread is None:
             self.begin()
 
     def begin(self):
         """Make the code in the background, unless it is there, being made or not wanted."""
         with self._lock:
-            if self.code is None and self._thread is None and call_is_possible():
+            if self._wanted and self.code is None and self._thread is None:
                 self._thread = specialised.make_in_background(*self._packed, self._ready)
 
     def wait(self):
@@ -83,8 +84,3 @@ class Specialisation:
         if code is not None:
             for model in models:
                 model._use(code)
-
-
-def call_is_possible():
-    """Return whether machine code for robots is wanted, and this Python can call it."""
-    return specialised.is_wanted() and specialised.is_supported()

@@ -9,9 +9,9 @@ from support.robots import random_urdf
 
 @pytest.fixture(scope='module', params=['general', 'specialised'])
 def model(request):
-    model = RobotModel.from_urdf(random_urdf(21, joints=3, with_mimic=False))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('DYNAMICS_NODE_SPECIALISE', '01'[request.param == 'specialised'])
+        model = RobotModel.from_urdf(random_urdf(21, joints=3, with_mimic=False))
         assert model.specialise() == (request.param == 'specialised')
         yield model
 

@@ -95,23 +95,25 @@ class RobotCode:
                                    f'kernel; remove it from {store.folder()}')
 
 
-def are_ordinary(inputs, names):
+def are_ordinary(name, inputs):
     """
     Return whether the machine code may be used: all numbers finite, no angle too large.
 
     Parameters
     ----------
+    name : str
+        Of the quantity.
     inputs : sequence of numpy.ndarray
-    names : sequence of str
-        'q' for positions.
+        Its arguments.
 
     Returns
     -------
     bool
 
     """
-    for name, values in zip(names, inputs, strict=True):
-        bound = LARGEST_ANGLE if name == 'q' else call.LARGEST_NUMBER
+    arguments, _ = quantities.SIGNATURES[name]
+    for argument, values in zip(arguments, inputs, strict=True):
+        bound = LARGEST_ANGLE if argument == 'q' else call.LARGEST_NUMBER
         # Written so that NaN fails.
         if not (values.max(initial=0.0) < bound and values.min(initial=0.0) > -bound):
             return False
