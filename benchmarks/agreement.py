@@ -63,7 +63,9 @@ def check(robot, quantity, call):
     states = robot.states[:CHECKED_STATES]
     for state, arguments in zip(states, call.arguments(quantity, states), strict=True):
         expected = expected_parts(robot, quantity, state)
-        for part, value in zip(call.parts, call.run(*arguments), strict=True):
+        result = call.run(*arguments)
+        parts = result if isinstance(result, tuple) else (result,)
+        for part, value in zip(call.parts, parts, strict=True):
             array = call.array(value)
             if array.shape != expected[part].shape:
                 raise DifferentResultError(

@@ -31,7 +31,8 @@ class Call:
     Attributes
     ----------
     run : callable
-        Takes the first `ARGUMENTS` vectors of a state; returns a tuple, one item per part.
+        Takes the first `ARGUMENTS` vectors of a state; returns a tuple, one item per part, or
+        the array if there is one part.
     parts : tuple of str
         What it returns: 'D', 'C', 'G', 'C qd', 'C qd + G', 'tau' or 'qdd'.
     how : str
@@ -43,7 +44,7 @@ class Call:
 
     """
 
-    run: Callable[..., tuple]
+    run: Callable[..., Any]
     parts: tuple[str, ...]
     how: str
     argument: Callable[[np.ndarray], Any] = field(default=same)

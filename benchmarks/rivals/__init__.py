@@ -10,7 +10,7 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 
 # In the order of the report.
-FILES = ('pinocchio', 'mujoco', 'drake', 'kdl', 'roboticstoolbox', 'frax', 'textbook')
+FILES = ('general', 'pinocchio', 'mujoco', 'drake', 'kdl', 'roboticstoolbox', 'frax', 'textbook')
 
 
 def load(names=FILES):

@@ -9,7 +9,8 @@ NAME = 'dynamics_node'
 PACKAGE = 'dynamics_node'
 # Of this checkout: a package of this name may be installed from somewhere else.
 VERSION = ElementTree.parse(ROOT / 'package.xml').findtext('version')
-NOTE = "Arguments are checked and copied, results are fresh arrays that stay the caller's."
+NOTE = ("Machine code of the robot's own, the methods of `RobotModel` themselves: arguments are "
+        "checked, and an answer that is held stays its holder's.")
 
 
 def calls(robot):
@@ -25,27 +26,27 @@ def calls(robot):
     dict of str to Call
 
     """
-    model = robot.model
+    robot.model.specialise()
+    return calls_of(robot.model)
 
-    def dynamics(q, qd):
-        return model.dynamics(q, qd)
 
-    def mass_matrix(q):
-        return (model.mass_matrix(q),)
+def calls_of(model):
+    """
+    Return a model's calls.
 
-    def gravity(q):
-        return (model.gravity_torque(q),)
+    Parameters
+    ----------
+    model : RobotModel
 
-    def inverse(q, qd, qdd):
-        return (model.inverse_dynamics(q, qd, qdd),)
+    Returns
+    -------
+    dict of str to Call
 
-    def forward(q, qd, tau):
-        return (model.forward_dynamics(q, qd, tau),)
-
+    """
     return {
-        'dynamics': Call(dynamics, ('D', 'C', 'G'), 'dynamics'),
-        'mass_matrix': Call(mass_matrix, ('D',), 'mass_matrix'),
-        'gravity': Call(gravity, ('G',), 'gravity_torque'),
-        'inverse': Call(inverse, ('tau',), 'inverse_dynamics'),
-        'forward': Call(forward, ('qdd',), 'forward_dynamics'),
+        'dynamics': Call(model.dynamics, ('D', 'C', 'G'), 'dynamics'),
+        'mass_matrix': Call(model.mass_matrix, ('D',), 'mass_matrix'),
+        'gravity': Call(model.gravity_torque, ('G',), 'gravity_torque'),
+        'inverse': Call(model.inverse_dynamics, ('tau',), 'inverse_dynamics'),
+        'forward': Call(model.forward_dynamics, ('qdd',), 'forward_dynamics'),
     }
