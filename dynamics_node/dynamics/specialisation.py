@@ -38,7 +38,8 @@ class Specialisation:
         self._lock = threading.Lock()
         self._states = 0
         self._thread = None
-        self._wanted = specialised.is_wanted() and specialised.is_supported()
+        self._wanted = (len(structure) > 0 and specialised.is_wanted()
+                        and specialised.is_supported())
         if self._wanted:
             self.code = specialised.from_disk(structure, numbers)
 

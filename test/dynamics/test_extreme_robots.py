@@ -12,10 +12,6 @@ ROBOTS = extreme_robots()
 # Of every element of D, C, G and of inverse dynamics, and of the energies.
 BOUND = 1e-11
 
-# C at the end of a boom that turns: the speed of the tip, times the first moment of what hangs
-# there, cancels in C, and is the larger, the longer the boom.
-BOOM_BOUND = 1e-9
-
 # Forward dynamics loses the digits that the condition of D takes, here times a few roundings.
 ROUNDINGS = 100 * np.finfo(float).eps
 
@@ -26,8 +22,7 @@ def test_an_extreme_robot_keeps_its_digits(name):
     errors = row.errors['library', 'exact']
     assert set(errors) == set(QUANTITIES)
     for quantity in ('D', 'C', 'G', 'ID', 'energy'):
-        bound = BOOM_BOUND if quantity == 'C' and 'boom' in name else BOUND
-        assert errors[quantity] <= bound, quantity
+        assert errors[quantity] <= BOUND, quantity
     assert errors['FD'] <= max(BOUND, ROUNDINGS * row.condition)
 
 

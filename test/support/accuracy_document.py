@@ -115,7 +115,8 @@ def _extremes(rows):
                             *_six(row.errors['library', 'exact']), *others))
     return '\n'.join([*lines, '', _text(
         'At the end of a boom the speed of the tip, times the first moment of what hangs there, '
-        'cancels in C: that is the error of C there.')])
+        'cancels in C, unless velocities count from each joint, as they do here: equation (24) '
+        'of [the mathematics](mathematics.md).')])
 
 
 def _swings():
