@@ -17,8 +17,10 @@ def blocks(path):
 
 def test_the_code_of_the_readme_runs(monkeypatch, capsys):
     monkeypatch.chdir(ROOT)
-    [code] = blocks(ROOT / 'README.md')
-    exec(compile(code, 'README.md', 'exec'), {})
+    names = {}
+    for code in blocks(ROOT / 'README.md'):
+        exec(compile(code, 'README.md', 'exec'), names)
+    assert names['robot'].is_specialised
     assert '(8, 8) (1000, 8, 8)' in capsys.readouterr().out
 
 
