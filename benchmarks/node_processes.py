@@ -17,7 +17,7 @@ class Measured:
 
     def __init__(self, module, *arguments):
         """Start `python -m module arguments`; what it prints is kept for `problem`."""
-        self._log = tempfile.TemporaryFile('w+')
+        self._log = tempfile.TemporaryFile('w+')  # noqa: SIM115 (closed by close)
         self._process = subprocess.Popen([sys.executable, '-m', module, *arguments], cwd=ROOT,
                                          stdout=self._log, stderr=subprocess.STDOUT)
 

@@ -50,6 +50,8 @@ class Stream:
         self._messages = [JointState(name=list(names), position=array('d', row),
                                      velocity=array('d', [0.0] * len(row)))
                           for row in positions]
+        for message in self._messages:  # as a robot's: without a stamp the node takes its own
+            message.header.stamp = node.get_clock().now().to_msg()
         steps = (answers[1:] - answers[:-1]).min(axis=0)
         self._column = int(steps.argmax())
         if steps[self._column] <= 0.0:

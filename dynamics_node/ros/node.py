@@ -50,6 +50,7 @@ class DynamicsNode(Node):
         super().__init__('dynamics_node', **options)
         self.logger = self.get_logger()
         self._robot = None
+        self._has_states = False
         self._start = time.monotonic()
         self.parameters = Parameters(self)
         self._gravity_publisher = self.create_publisher(JointState, '~/gravity_torque', RESULT)
@@ -146,15 +147,24 @@ class DynamicsNode(Node):
             self.logger.warning('gravity torque is not finite at this joint state: not published',
                                 throttle_duration_sec=1.0)
             return
-        self.logger.info('joint states arrive: publishing gravity torque', once=True)
         stamp = message.header.stamp
         if stamp.sec == 0 and stamp.nanosec == 0:
-            self.logger.info('joint_states has no stamp, arrival time is used', once=True)
             stamp = self.get_clock().now().to_msg()
-        self._publish_gravity(robot, stamp, effort)
+        if not self._has_states:
+            self._first_state(stamp is not message.header.stamp)
+        if self._gravity_publisher.get_subscription_count():
+            self._publish_gravity(robot, stamp, effort)
         if self.parameters['publish_dynamics'] and (
                 self._dynamics_publisher.get_subscription_count()):
             self._publish_dynamics(robot, stamp)
+
+    def _first_state(self, has_no_stamp):
+        # Not `once=True`: rclpy looks through the source files for the caller at every call,
+        # and that took longer than everything else in the callback.
+        self._has_states = True
+        self.logger.info('joint states arrive: publishing gravity torque')
+        if has_no_stamp:
+            self.logger.info('joint_states has no stamp, arrival time is used')
 
     def _publish_gravity(self, robot, stamp, effort):
         result = JointState(name=list(robot.joint_names), effort=to_field(effort),
