@@ -72,9 +72,9 @@ def started(module, *arguments):
 
 def node(urdf, *arguments, namespace='/ours'):
     """Run the node with a robot, its topics in a namespace, for the time of a with block."""
-    return started('dynamics_node.ros.main', '--ros-args', '-r', f'__ns:={namespace}',
-                   '-p', f'robot_description_file:={urdf}',
-                   '-p', f'state_timeout:={STATE_TIMEOUT}', *arguments)
+    return started('dynamics_node.ros.main', *arguments, '--ros-args',
+                   '-r', f'__ns:={namespace}', '-p', f'robot_description_file:={urdf}',
+                   '-p', f'state_timeout:={STATE_TIMEOUT}')
 
 
 def relay(kind, namespace='/relay'):
