@@ -1,5 +1,6 @@
 """`DynamicsNode`: joint states in, gravity torque and commands out."""
 
+import math
 import time
 
 from dynamics_interfaces.msg import JointDynamics
@@ -13,12 +14,15 @@ from .command_output import CommandOutput
 from .description_source import DescriptionSource
 from .diagnostics import Diagnostics
 from .guard import guarded, logged
+from .listened import Listened
 from .messages import to_field
+from .mismatch import mismatches
 from .parameter_table import ParameterError
 from .parameters import Parameters
-from .qos import joint_states, RESULT
+from .qos import joint_states, NO_EVENTS, NO_SUBSCRIPTION_EVENTS, RESULT
 from .robot import Robot
 from .services import DynamicsServices
+from .throttle import Throttle
 from ..dynamics import RobotModel
 from ..errors import DynamicsError
 from ..output import RejectedStateError
@@ -51,15 +55,21 @@ class DynamicsNode(Node):
         self.logger = self.get_logger()
         self._robot = None
         self._has_states = False
+        self._dropped, self._not_finite = Throttle(1.0), Throttle(1.0)
         self._start = time.monotonic()
         self.parameters = Parameters(self)
-        self._gravity_publisher = self.create_publisher(JointState, '~/gravity_torque', RESULT)
-        self._dynamics_publisher = self.create_publisher(JointDynamics, '~/dynamics', RESULT)
-        subscription = self.create_subscription(
+        self._gravity_publisher = self.create_publisher(JointState, '~/gravity_torque', RESULT,
+                                                        event_callbacks=NO_EVENTS)
+        self._dynamics_publisher = self.create_publisher(JointDynamics, '~/dynamics', RESULT,
+                                                         event_callbacks=NO_EVENTS)
+        self._is_gravity_wanted = Listened(self._gravity_publisher)
+        self._is_dynamics_wanted = Listened(self._dynamics_publisher)
+        self._states = self.create_subscription(
             JointState, 'joint_states', self._joint_state_received,
             joint_states(self.parameters['allow_several_state_publishers']),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies())
-        self._state_topic = subscription.topic_name
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=NO_SUBSCRIPTION_EVENTS)
+        self._state_topic = self._states.topic_name
         self.output = CommandOutput(self, self.parameters, self._get_robot, self._state_topic,
                                     self._output_changed)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.output)
@@ -137,25 +147,26 @@ class DynamicsNode(Node):
         try:
             robot.buffer.update(now, message.name, message.position, message.velocity)
         except RejectedStateError as error:
-            self.logger.warning(f'joint state dropped: {error}', throttle_duration_sec=1.0)
+            if self._dropped.is_due():
+                self.logger.warning(f'joint state dropped: {error}')
             return
         if robot.buffer.age(now) > self.parameters['state_timeout']:
             return
         effort = robot.gravity_torque()
         self.output.on_effort(now, effort)
-        if not np.isfinite(effort).all():
-            self.logger.warning('gravity torque is not finite at this joint state: not published',
-                                throttle_duration_sec=1.0)
+        if not all(map(math.isfinite, effort.tolist())):
+            if self._not_finite.is_due():
+                self.logger.warning('gravity torque is not finite at this joint state: not '
+                                    'published')
             return
         stamp = message.header.stamp
         if stamp.sec == 0 and stamp.nanosec == 0:
             stamp = self.get_clock().now().to_msg()
         if not self._has_states:
             self._first_state(stamp is not message.header.stamp)
-        if self._gravity_publisher.get_subscription_count():
+        if self._is_gravity_wanted:
             self._publish_gravity(robot, stamp, effort)
-        if self.parameters['publish_dynamics'] and (
-                self._dynamics_publisher.get_subscription_count()):
+        if self._is_dynamics_wanted and self.parameters['publish_dynamics']:
             self._publish_dynamics(robot, stamp)
 
     def _first_state(self, has_no_stamp):
@@ -217,15 +228,19 @@ class DynamicsNode(Node):
         if self._robot is None:
             self.logger.warning(
                 f'no robot description on {self.source.topic} yet: start robot_state_publisher, '
-                'or run with --ros-args -p robot_description_file:=robot.urdf',
-                throttle_duration_sec=10.0)
+                'or run with --ros-args -p robot_description_file:=robot.urdf'
+                + self._unheard(self.source.subscription), throttle_duration_sec=10.0)
             return
         missing = self._robot.buffer.stale_joints(time.monotonic(), PATIENCE)
         if missing:
             self.logger.warning(
                 f'no joint state on {self._state_topic} for {", ".join(missing)}: does the '
                 'joint_state_broadcaster run, and are these the names of its joints? '
-                '(parameter joints chooses others)', throttle_duration_sec=10.0)
+                '(parameter joints chooses others)' + self._unheard(self._states),
+                throttle_duration_sec=10.0)
+
+    def _unheard(self, subscription):
+        return ''.join(f'; {text}' for text in mismatches(self, subscription))
 
     def _output_changed(self):
         self._diagnostics.publish()
