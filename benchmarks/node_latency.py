@@ -2,6 +2,7 @@
 What the node costs beyond a bare rclpy relay: latency, processor time, services, start.
 
     python -m benchmarks.node_latency
+    python -m benchmarks.node_latency --executor rclpy --no-raw-states
 
 The node and the relay run in processes of their own, at the same time, and are fed in turn in
 short slices, so that whatever else the machine does hits both. All ratios are of what was
@@ -30,12 +31,12 @@ from .node_stream import Stream
 ROBOT = ROOT / 'config' / 'robots' / 'arm7.urdf'
 RATES = (100, 500, 1000)
 # Slices per rate and process, and the length of one, s: shorter than the state timeout.
-SLICES = 10
+SLICES = 9
 SLICE = 0.4
 # Service calls: bursts per kind, and calls per burst.
-BURSTS = 20
+BURSTS = 15
 CALLS = 25
-STARTS = 5
+STARTS = 4
 PATIENCE = 30.0
 
 
@@ -373,7 +374,8 @@ def table(rows):
 def main():
     """Print the table; further arguments go to the node."""
     begin = time.monotonic()
-    print(table(measure(arguments=sys.argv[1:])))
+    rows = measure(arguments=sys.argv[1:])
+    print(table(rows))
     print(f'measured in {time.monotonic() - begin:.0f} s', file=sys.stderr)
 
 

@@ -38,20 +38,22 @@ def main(args=None):
     try:
         # rclpy's own handlers would end the context before the arm has been brought to rest.
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        node = _start(signals)
+        from .command_line import parse
+        options = parse(sys.argv if args is None else args)
+        node = _start(signals, options)
     except Exception as error:  # a command line, a parameter or a description that is refused
         rclpy.logging.get_logger('dynamics_node').fatal(str(error))
         rclpy.try_shutdown()
         return 1
     try:
         if node is not None:
-            _spin(node, signals, sys.argv if args is None else args)
+            _spin(node, signals, options)
     finally:
         rclpy.try_shutdown()
     return 0
 
 
-def _start(signals):
+def _start(signals, options):
     # None if a signal came first. The compiled kernels and the URDF parser are loaded here,
     # before the first callback could wait for them.
     from .node import DynamicsNode
@@ -59,12 +61,12 @@ def _start(signals):
     from ..kernels.warm_up import warm_up
     warm_up()
     RobotModel.from_urdf('<robot name="warm_up"><link name="base"/></robot>')
-    return None if signals.name else DynamicsNode()
+    return None if signals.name else DynamicsNode(raw_states=options.raw_states)
 
 
-def _spin(node, signals, args):
-    from .executor import chosen_executor, make_executor
-    executor = make_executor(chosen_executor(args), node.logger)
+def _spin(node, signals, options):
+    from .executor import make_executor
+    executor = make_executor(options.executor, node.logger)
     executor.add_node(node)
     signals.call(node.create_guard_condition(lambda: None).trigger)
     _spare_the_garbage_collector()

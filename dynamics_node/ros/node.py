@@ -14,6 +14,7 @@ from .command_output import CommandOutput
 from .description_source import DescriptionSource
 from .diagnostics import Diagnostics
 from .guard import guarded, logged
+from .joint_state_reader import JointStateReader
 from .listened import Listened
 from .messages import to_field
 from .mismatch import mismatches
@@ -34,12 +35,14 @@ PATIENCE = 5.0
 class DynamicsNode(Node):
     """Computes the dynamics of one robot from its description and its joint states."""
 
-    def __init__(self, **options):
+    def __init__(self, raw_states=False, **options):
         """
         Create everything the node consists of; the output is off.
 
         Parameters
         ----------
+        raw_states : bool
+            Read joint_states by `JointStateReader` instead of rclpy.
         **options
             Of rclpy.node.Node.
 
@@ -65,10 +68,12 @@ class DynamicsNode(Node):
         self._is_gravity_wanted = Listened(self._gravity_publisher)
         self._is_dynamics_wanted = Listened(self._dynamics_publisher)
         self._states = self.create_subscription(
-            JointState, 'joint_states', self._joint_state_received,
+            JointState, 'joint_states',
+            self._bytes_received if raw_states else self._joint_state_received,
             joint_states(self.parameters['allow_several_state_publishers']),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            event_callbacks=NO_SUBSCRIPTION_EVENTS)
+            event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=raw_states)
+        self._reader = JointStateReader()
         self._state_topic = self._states.topic_name
         self.output = CommandOutput(self, self.parameters, self._get_robot, self._state_topic,
                                     self._output_changed)
@@ -139,6 +144,15 @@ class DynamicsNode(Node):
         self.output.configure()
 
     @guarded
+    def _bytes_received(self, data):
+        try:
+            message = self._reader.read(data)
+        except Exception as error:  # no joint state: several of rclpy's exceptions say so
+            self._drop(error)
+            return
+        self._joint_state_received(message)
+
+    @guarded
     def _joint_state_received(self, message):
         robot = self._robot
         if robot is None:
@@ -147,8 +161,7 @@ class DynamicsNode(Node):
         try:
             robot.buffer.update(now, message.name, message.position, message.velocity)
         except RejectedStateError as error:
-            if self._dropped.is_due():
-                self.logger.warning(f'joint state dropped: {error}')
+            self._drop(error)
             return
         if robot.buffer.age(now) > self.parameters['state_timeout']:
             return
@@ -168,6 +181,10 @@ class DynamicsNode(Node):
             self._publish_gravity(robot, stamp, effort)
         if self._is_dynamics_wanted and self.parameters['publish_dynamics']:
             self._publish_dynamics(robot, stamp)
+
+    def _drop(self, error):
+        if self._dropped.is_due():
+            self.logger.warning(f'joint state dropped: {error}')
 
     def _first_state(self, has_no_stamp):
         # Not `once=True`: rclpy looks through the source files for the caller at every call,
