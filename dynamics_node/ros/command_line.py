@@ -24,9 +24,9 @@ def parse(arguments):
     """
     parser = argparse.ArgumentParser(description='Robot dynamics as a ROS 2 node.')
     parser.add_argument('--executor', choices=sorted(EXECUTORS), default='lean',
-                        help="rclpy: rclpy's SingleThreadedExecutor; lean: the same for half "
-                        'the processor time, resting on the inside of rclpy 7.1')
+                        help="rclpy: rclpy's SingleThreadedExecutor; lean: the same for less "
+                        'processor time, resting on the inside of rclpy 7.1')
     parser.add_argument('--raw-states', action=argparse.BooleanOptionalAction, default=True,
-                        help='read joint_states from the bytes on the wire: a tenth of a '
-                        'millisecond less from state to command')
+                        help='read joint_states from the bytes on the wire: less time from '
+                        'state to command')
     return parser.parse_known_args(remove_ros_args(arguments)[1:])[0]
