@@ -7,6 +7,9 @@ import numpy as np
 from .limiter import EffortLimiter, InvalidEffortError
 from .state_machine import OutputState, OutputStateMachine
 
+# How often a stop sends its next command, and the shortest time between two looks, s.
+STOP_STEP = 0.01
+SHORTEST_LOOK = 0.001
 STOP_BEHAVIORS = ('ramp_to_zero', 'hold', 'zero')
 
 
@@ -170,6 +173,25 @@ class OutputChannel:
         if self.machine.state != OutputState.STOPPING:
             return None
         return self._stopping(now)
+
+    def next_look(self, state_age):
+        """
+        Return when `tick` has to be called next while the output is on.
+
+        Parameters
+        ----------
+        state_age : float
+            Age of the newest usable joint state, s.
+
+        Returns
+        -------
+        float
+            s: the next step of a stop, or the moment at which the newest state becomes stale.
+
+        """
+        if not self.machine.is_driving:
+            return STOP_STEP
+        return max(self.settings.state_timeout - state_age, SHORTEST_LOOK)
 
     def _stopping(self, now):
         is_over = self.machine.progress(now) >= 1.0

@@ -59,12 +59,16 @@ class JointStateBuffer:
         """
         self._index = {name: i for i, name in enumerate(names)}
         self._names = tuple(names)
-        self._needed = np.array([self._index[name] for name in needed], dtype=np.intp)
-        self._position = np.array(neutral, dtype=float)
-        self._velocity = np.full(len(names), math.nan)
-        self._time = np.full(len(names), -math.inf)
+        self._needed = [self._index[name] for name in needed]
+        # Lists, not arrays: for the few joints of a robot plain numbers are several times as
+        # fast as numpy, and this runs for every state before its command goes out.
+        self._position = np.array(neutral, dtype=float).tolist()
+        self._velocity = [math.nan] * len(names)
+        self._time = [-math.inf] * len(names)
+        self._oldest = -math.inf
         self._known_names = None
-        self._source = self._target = np.empty(0, dtype=np.intp)
+        self._pairs: list[tuple[int, int]] = []
+        self._has_all_needed = False
         self.accepted = 0
         self.rejected: Counter[str] = Counter()
 
@@ -105,19 +109,26 @@ class JointStateBuffer:
         if len(velocities) not in (0, len(names)):
             raise RejectedStateError('length', f'expected {len(names)} velocities or none, '
                                      f'got {len(velocities)}')
-        source, target = self._source, self._target
-        measured = np.asarray(positions, dtype=float)[source]
-        is_finite = np.isfinite(measured)
-        if not is_finite.all():
-            wrong = [self._names[i] for i in target[~is_finite] if i in self._needed]
-            if wrong:
-                raise RejectedStateError('not finite', 'expected finite positions, got NaN or '
-                                         f'infinity for {", ".join(wrong)}')
-            source, target, measured = source[is_finite], target[is_finite], measured[is_finite]
-        self._position[target] = measured
-        self._time[target] = now
-        self._velocity[target] = (np.asarray(velocities, dtype=float)[source]
-                                  if len(velocities) else math.nan)
+        pairs, is_complete = self._pairs, self._has_all_needed
+        if not all(map(math.isfinite, positions)):
+            pairs, is_complete = self._finite_pairs(positions), False
+        position, velocity, time = self._position, self._velocity, self._time
+        has_velocities = len(velocities) > 0
+        for source, target in pairs:
+            position[target] = positions[source]
+            velocity[target] = velocities[source] if has_velocities else math.nan
+            time[target] = now
+        self._oldest = now if is_complete else min(
+            (self._time[i] for i in self._needed), default=-math.inf)
+
+    def _finite_pairs(self, positions):
+        wrong = {target for source, target in self._pairs
+                 if not math.isfinite(positions[source])}
+        missing = [self._names[i] for _, i in self._pairs if i in wrong and i in self._needed]
+        if missing:
+            raise RejectedStateError('not finite', 'expected finite positions, got NaN or '
+                                     f'infinity for {", ".join(missing)}')
+        return [(source, target) for source, target in self._pairs if target not in wrong]
 
     def _learn(self, names):
         # The mapping by name; kept until a message names other joints or another order.
@@ -128,20 +139,21 @@ class JointStateBuffer:
             twice = sorted(name for name, count in Counter(names).items() if count > 1)
             raise RejectedStateError('name twice', 'expected each joint once, got twice: '
                                      + ', '.join(twice[:5]))
-        pairs = [(i, self._index[name]) for i, name in enumerate(names) if name in self._index]
-        self._source = np.array([i for i, _ in pairs], dtype=np.intp)
-        self._target = np.array([i for _, i in pairs], dtype=np.intp)
+        self._pairs = [(i, self._index[name]) for i, name in enumerate(names)
+                       if name in self._index]
+        self._has_all_needed = bool(self._needed) and set(self._needed) <= {
+            target for _, target in self._pairs}
         self._known_names = list(names)
 
     @property
     def position(self):
         """Newest positions, or neutral ones where never measured; shape (n,), a copy."""
-        return self._position.copy()
+        return np.array(self._position, dtype=float)
 
     @property
     def velocity(self):
         """Newest velocities, NaN where unknown; shape (n,), a copy."""
-        return self._velocity.copy()
+        return np.array(self._velocity, dtype=float)
 
     def age(self, now):
         """
@@ -158,9 +170,7 @@ class JointStateBuffer:
             s; infinite while a needed joint was never measured.
 
         """
-        if self._needed.size == 0:
-            return math.inf
-        return now - float(self._time[self._needed].min())
+        return now - self._oldest
 
     def stale_joints(self, now, timeout):
         """

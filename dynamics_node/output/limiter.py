@@ -1,5 +1,7 @@
 """The one place where an effort becomes a command: scaled, limited, checked last."""
 
+import math
+
 import numpy as np
 
 from ..errors import DynamicsError
@@ -19,8 +21,8 @@ class EffortLimiter:
 
     Attributes
     ----------
-    saturated : numpy.ndarray of bool, shape (m,)
-        Which joints were clamped by the last call.
+    is_saturated : bool
+        Whether any joint was clamped by the last call.
     saturations : int
         Commands with at least one clamped joint.
 
@@ -40,25 +42,33 @@ class EffortLimiter:
             Gain on the model's effort.
 
         """
-        self._limits = np.array(limits, dtype=float)
-        self._rate_limits = np.array(rate_limits, dtype=float)
-        self._scale = np.array(scale, dtype=float)
-        self._last = np.zeros(self._limits.size)
-        self.saturated = np.zeros(self._limits.size, dtype=bool)
+        # Lists, not arrays: for the few joints of a robot plain numbers are several times as
+        # fast as numpy, and every command waits for this.
+        self._limits = np.array(limits, dtype=float).tolist()
+        self._rate_limits = np.array(rate_limits, dtype=float).tolist()
+        self._scale = np.array(scale, dtype=float).tolist()
+        self._last = [0.0] * len(self._limits)
+        self._is_clamped = [False] * len(self._limits)
+        self.is_saturated = False
         self.saturations = 0
+
+    @property
+    def saturated(self):
+        """Which joints were clamped by the last call, bool, shape (m,), a copy."""
+        return np.array(self._is_clamped, dtype=bool)
 
     @property
     def last(self):
         """The last command, shape (m,), a copy."""
-        return self._last.copy()
+        return np.array(self._last)
 
     def reset(self):
         """Take zero for the last command."""
-        self._last[:] = 0.0
+        self._last = [0.0] * len(self._limits)
 
     def carry_on_from(self, other):
         """Take over last command and count from the limiter that this one replaces."""
-        self._last[:] = other.last
+        self._last = other.last.tolist()
         self.saturations = other.saturations
 
     def command(self, effort, ramp, dt, start=0.0):
@@ -89,15 +99,21 @@ class EffortLimiter:
 
         """
         effort = np.asarray(effort, dtype=float)
-        if effort.shape != self._last.shape:
-            raise InvalidEffortError(f'expected {self._last.size} efforts, got shape '
+        if effort.shape != (len(self._last),):
+            raise InvalidEffortError(f'expected {len(self._last)} efforts, got shape '
                                      f'{effort.shape}')
-        with np.errstate(all='ignore'):  # an overflow is clamped below, a NaN refused at the end
-            scaled = effort * self._scale
-        self.saturated = np.abs(scaled) > self._limits
-        self.saturations += bool(self.saturated.any())
-        clamped = np.clip(scaled, -self._limits, self._limits)
-        return self._step_to(ramp * clamped + (1.0 - ramp) * start, dt)
+        target = []
+        for i, (value, scale, limit) in enumerate(zip(
+                effort.tolist(), self._scale, self._limits, strict=True)):
+            value *= scale
+            self._is_clamped[i] = abs(value) > limit
+            target.append(value if abs(value) <= limit else _clip(value, -limit, limit))
+        self.is_saturated = True in self._is_clamped
+        self.saturations += self.is_saturated
+        if ramp != 1.0:
+            start = np.broadcast_to(start, effort.shape).tolist()
+            target = [ramp * value + (1.0 - ramp) * first for value, first in zip(target, start)]
+        return self._step_to(target, dt)
 
     def fade(self, start, ramp, dt):
         """
@@ -117,16 +133,34 @@ class EffortLimiter:
         numpy.ndarray, shape (m,)
 
         """
-        return self._step_to(ramp * start, dt)
+        return self._step_to([ramp * value for value in np.asarray(start).tolist()], dt)
 
     def _step_to(self, target, dt):
-        step = self._rate_limits * max(dt, 0.0)
-        command = np.clip(target, self._last - step, self._last + step)
-        # Rounding of last + step must not carry a command over its limit; a limit that was
-        # lowered below the last command is approached at the rate limit.
-        bound = np.maximum(self._limits, np.abs(self._last))
-        command = np.clip(command, -bound, bound)
-        if not np.isfinite(command).all():
-            raise InvalidEffortError(f'expected finite efforts, got {command.tolist()}')
-        self._last[:] = command
-        return command
+        time = max(dt, 0.0)
+        command = []
+        for value, last, rate, limit in zip(target, self._last, self._rate_limits, self._limits,
+                                            strict=True):
+            step = rate * time
+            value = _clip(value, last - step, last + step)
+            if not abs(value) <= limit:
+                # Rounding of last + step must not carry a command over its limit; a limit that
+                # was lowered below the last command is approached at the rate limit.
+                bound = max(limit, abs(last))
+                value = _clip(value, -bound, bound)
+            command.append(value)
+        if not all(map(math.isfinite, command)):
+            raise InvalidEffortError(f'expected finite efforts, got {command}')
+        self._last = command
+        return np.array(command)
+
+
+def _clip(value, low, high):
+    # Every comparison with NaN is False, so that a NaN in any of the three ends as NaN, which
+    # is refused, and never as one of the bounds.
+    if low <= value <= high:
+        return value
+    if value < low <= high:
+        return low
+    if value > high >= low:
+        return high
+    return math.nan

@@ -12,12 +12,10 @@ from std_srvs.srv import SetBool
 
 from .guard import guarded, guarded_service
 from .messages import to_field
-from .qos import COMMAND, OUTPUT_STATE
+from .qos import COMMAND, NO_EVENTS, OUTPUT_STATE
+from .throttle import Throttle
 from ..output import OutputChannel
-from ..output.channel import OutputSettings
-
-# How often the watchdog looks and a stop sends its next command, s.
-TICK = 0.01
+from ..output.channel import OutputSettings, STOP_STEP
 
 
 class CommandOutput:
@@ -58,12 +56,15 @@ class CommandOutput:
         self.commands = 0
         self.was_asked = False
         self._message = Float64MultiArray()
+        self._saturated = Throttle(1.0)
         self._publisher = node.create_publisher(
-            Float64MultiArray, parameters['command_topic'], COMMAND)
-        self._state_publisher = node.create_publisher(OutputStateMessage, '~/state', OUTPUT_STATE)
+            Float64MultiArray, parameters['command_topic'], COMMAND,
+            event_callbacks=NO_EVENTS)
+        self._state_publisher = node.create_publisher(OutputStateMessage, '~/state', OUTPUT_STATE,
+                                                      event_callbacks=NO_EVENTS)
         self.channel = OutputChannel(self._settings(), self._changed)
         # On the steady clock: it must watch while simulation time stands still.
-        self._watchdog = node.create_timer(TICK, self._tick,
+        self._watchdog = node.create_timer(STOP_STEP, self._tick,
                                            clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._watchdog.cancel()
         node.create_service(SetBool, '~/enable', self._enable_requested)
@@ -78,7 +79,7 @@ class CommandOutput:
         command = self.channel.on_effort(now, effort)
         if command is not None:
             self._publish(command)
-            if self.channel.limiter.saturated.any():
+            if self.channel.limiter.is_saturated and self._saturated.is_due():
                 self._warn_saturated(effort)
 
     def announce(self):
@@ -88,6 +89,8 @@ class CommandOutput:
     def configure(self):
         """Take over parameters and the limits of the robot in force."""
         self.channel.settings = self._settings()
+        if self.channel.machine.is_on:
+            self._look_again_in(STOP_STEP)  # the timeout may have become shorter
         robot = self._get_robot()
         if robot is None:
             return
@@ -189,6 +192,14 @@ class CommandOutput:
         command = self.channel.tick(now, age)
         if command is not None:
             self._publish(command)
+        if self.channel.machine.is_on:
+            self._look_again_in(self.channel.next_look(age))
+
+    def _look_again_in(self, seconds):
+        # Only when a state can have become stale, or a stop goes on: a timer that runs at a
+        # fixed rate instead costs as much as a stream of joint states of that rate.
+        self._watchdog.timer_period_ns = math.ceil(seconds * 1e9)
+        self._watchdog.reset()
 
     def _publish(self, command):
         self._message.data = to_field(command)
@@ -196,7 +207,10 @@ class CommandOutput:
         self.commands += 1
 
     def _changed(self, state, reason):
-        (self._watchdog.reset if self.channel.machine.is_on else self._watchdog.cancel)()
+        if self.channel.machine.is_on:
+            self._look_again_in(STOP_STEP)
+        else:
+            self._watchdog.cancel()
         message = OutputStateMessage(state=int(state), name=state.name, reason=reason)
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._state_publisher.publish(message)
@@ -212,7 +226,7 @@ class CommandOutput:
         names = self._get_robot().joint_names
         which = '; '.join(f'{names[i]}: {effort[i]:.6g} limited to {limiter.last[i]:.6g}'
                           for i in np.flatnonzero(limiter.saturated))
-        self.logger.warning(f'effort above its limit: {which}', throttle_duration_sec=1.0)
+        self.logger.warning(f'effort above its limit: {which}')
 
     def _settings(self):
         return OutputSettings(**{name: self._parameters[name] for name in (

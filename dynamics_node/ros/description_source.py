@@ -3,7 +3,7 @@
 from std_msgs.msg import String
 
 from .guard import logged
-from .qos import ROBOT_DESCRIPTION
+from .qos import NO_SUBSCRIPTION_EVENTS, ROBOT_DESCRIPTION
 
 
 class DescriptionSource:
@@ -31,7 +31,7 @@ class DescriptionSource:
         self.logger = node.get_logger()
         self._on_description = on_description
         self._last = None
-        self.topic = None
+        self.topic = self.subscription = None
         if parameters['robot_description']:
             # Bytes are always text, so that a text is never taken for a path.
             on_description(parameters['robot_description'].encode(),
@@ -40,9 +40,10 @@ class DescriptionSource:
             path = parameters['robot_description_file']
             on_description(path, f'parameter robot_description_file ({path})')
         else:
-            subscription = node.create_subscription(String, 'robot_description', self._received,
-                                                    ROBOT_DESCRIPTION)
-            self.topic = subscription.topic_name
+            self.subscription = node.create_subscription(
+                String, 'robot_description', self._received, ROBOT_DESCRIPTION,
+                event_callbacks=NO_SUBSCRIPTION_EVENTS)
+            self.topic = self.subscription.topic_name
 
     @logged
     def _received(self, message):

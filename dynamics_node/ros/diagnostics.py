@@ -5,7 +5,7 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
-from .qos import RESULT
+from .qos import NO_EVENTS, RESULT
 
 
 class Diagnostics:
@@ -27,7 +27,8 @@ class Diagnostics:
         self._parameters = parameters
         self._get_robot = get_robot
         self._output = output
-        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', RESULT)
+        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', RESULT,
+                                                event_callbacks=NO_EVENTS)
         self._counted = (time.monotonic(), 0)
         self._rate = 0.0
 

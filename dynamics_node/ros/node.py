@@ -1,5 +1,6 @@
 """`DynamicsNode`: joint states in, gravity torque and commands out."""
 
+import math
 import time
 
 from dynamics_interfaces.msg import JointDynamics
@@ -13,12 +14,16 @@ from .command_output import CommandOutput
 from .description_source import DescriptionSource
 from .diagnostics import Diagnostics
 from .guard import guarded, logged
+from .joint_state_reader import JointStateReader
+from .listened import Listened
 from .messages import to_field
+from .mismatch import mismatches
 from .parameter_table import ParameterError
 from .parameters import Parameters
-from .qos import joint_states, RESULT
+from .qos import joint_states, NO_EVENTS, NO_SUBSCRIPTION_EVENTS, RESULT
 from .robot import Robot
 from .services import DynamicsServices
+from .throttle import Throttle
 from ..dynamics import RobotModel
 from ..errors import DynamicsError
 from ..output import RejectedStateError
@@ -30,12 +35,14 @@ PATIENCE = 5.0
 class DynamicsNode(Node):
     """Computes the dynamics of one robot from its description and its joint states."""
 
-    def __init__(self, **options):
+    def __init__(self, raw_states=False, **options):
         """
         Create everything the node consists of; the output is off.
 
         Parameters
         ----------
+        raw_states : bool
+            Read joint_states by `JointStateReader` instead of rclpy.
         **options
             Of rclpy.node.Node.
 
@@ -50,15 +57,24 @@ class DynamicsNode(Node):
         super().__init__('dynamics_node', **options)
         self.logger = self.get_logger()
         self._robot = None
+        self._has_states = False
+        self._dropped, self._not_finite = Throttle(1.0), Throttle(1.0)
         self._start = time.monotonic()
         self.parameters = Parameters(self)
-        self._gravity_publisher = self.create_publisher(JointState, '~/gravity_torque', RESULT)
-        self._dynamics_publisher = self.create_publisher(JointDynamics, '~/dynamics', RESULT)
-        subscription = self.create_subscription(
-            JointState, 'joint_states', self._joint_state_received,
+        self._gravity_publisher = self.create_publisher(JointState, '~/gravity_torque', RESULT,
+                                                        event_callbacks=NO_EVENTS)
+        self._dynamics_publisher = self.create_publisher(JointDynamics, '~/dynamics', RESULT,
+                                                         event_callbacks=NO_EVENTS)
+        self._is_gravity_wanted = Listened(self._gravity_publisher)
+        self._is_dynamics_wanted = Listened(self._dynamics_publisher)
+        self._states = self.create_subscription(
+            JointState, 'joint_states',
+            self._bytes_received if raw_states else self._joint_state_received,
             joint_states(self.parameters['allow_several_state_publishers']),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies())
-        self._state_topic = subscription.topic_name
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=raw_states)
+        self._reader = JointStateReader()
+        self._state_topic = self._states.topic_name
         self.output = CommandOutput(self, self.parameters, self._get_robot, self._state_topic,
                                     self._output_changed)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.output)
@@ -128,6 +144,15 @@ class DynamicsNode(Node):
         self.output.configure()
 
     @guarded
+    def _bytes_received(self, data):
+        try:
+            message = self._reader.read(data)
+        except Exception as error:  # no joint state: several of rclpy's exceptions say so
+            self._drop(error)
+            return
+        self._joint_state_received(message)
+
+    @guarded
     def _joint_state_received(self, message):
         robot = self._robot
         if robot is None:
@@ -136,25 +161,38 @@ class DynamicsNode(Node):
         try:
             robot.buffer.update(now, message.name, message.position, message.velocity)
         except RejectedStateError as error:
-            self.logger.warning(f'joint state dropped: {error}', throttle_duration_sec=1.0)
+            self._drop(error)
             return
         if robot.buffer.age(now) > self.parameters['state_timeout']:
             return
         effort = robot.gravity_torque()
         self.output.on_effort(now, effort)
-        if not np.isfinite(effort).all():
-            self.logger.warning('gravity torque is not finite at this joint state: not published',
-                                throttle_duration_sec=1.0)
+        if not all(map(math.isfinite, effort.tolist())):
+            if self._not_finite.is_due():
+                self.logger.warning('gravity torque is not finite at this joint state: not '
+                                    'published')
             return
-        self.logger.info('joint states arrive: publishing gravity torque', once=True)
         stamp = message.header.stamp
         if stamp.sec == 0 and stamp.nanosec == 0:
-            self.logger.info('joint_states has no stamp, arrival time is used', once=True)
             stamp = self.get_clock().now().to_msg()
-        self._publish_gravity(robot, stamp, effort)
-        if self.parameters['publish_dynamics'] and (
-                self._dynamics_publisher.get_subscription_count()):
+        if not self._has_states:
+            self._first_state(stamp is not message.header.stamp)
+        if self._is_gravity_wanted:
+            self._publish_gravity(robot, stamp, effort)
+        if self._is_dynamics_wanted and self.parameters['publish_dynamics']:
             self._publish_dynamics(robot, stamp)
+
+    def _drop(self, error):
+        if self._dropped.is_due():
+            self.logger.warning(f'joint state dropped: {error}')
+
+    def _first_state(self, has_no_stamp):
+        # Not `once=True`: rclpy looks through the source files for the caller at every call,
+        # and that took longer than everything else in the callback.
+        self._has_states = True
+        self.logger.info('joint states arrive: publishing gravity torque')
+        if has_no_stamp:
+            self.logger.info('joint_states has no stamp, arrival time is used')
 
     def _publish_gravity(self, robot, stamp, effort):
         result = JointState(name=list(robot.joint_names), effort=to_field(effort),
@@ -207,15 +245,19 @@ class DynamicsNode(Node):
         if self._robot is None:
             self.logger.warning(
                 f'no robot description on {self.source.topic} yet: start robot_state_publisher, '
-                'or run with --ros-args -p robot_description_file:=robot.urdf',
-                throttle_duration_sec=10.0)
+                'or run with --ros-args -p robot_description_file:=robot.urdf'
+                + self._unheard(self.source.subscription), throttle_duration_sec=10.0)
             return
         missing = self._robot.buffer.stale_joints(time.monotonic(), PATIENCE)
         if missing:
             self.logger.warning(
                 f'no joint state on {self._state_topic} for {", ".join(missing)}: does the '
                 'joint_state_broadcaster run, and are these the names of its joints? '
-                '(parameter joints chooses others)', throttle_duration_sec=10.0)
+                '(parameter joints chooses others)' + self._unheard(self._states),
+                throttle_duration_sec=10.0)
+
+    def _unheard(self, subscription):
+        return ''.join(f'; {text}' for text in mismatches(self, subscription))
 
     def _output_changed(self):
         self._diagnostics.publish()

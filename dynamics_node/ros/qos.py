@@ -1,5 +1,6 @@
 """Quality of service of every topic, in one place."""
 
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 
 
@@ -25,3 +26,9 @@ ROBOT_DESCRIPTION = _newest(QoSReliabilityPolicy.RELIABLE, QoSDurabilityPolicy.T
 OUTPUT_STATE = ROBOT_DESCRIPTION
 COMMAND = _newest(QoSReliabilityPolicy.RELIABLE)
 RESULT = COMMAND
+
+# rclpy waits for two events of every publisher and subscription, only to warn of partners that
+# cannot match, and each costs a twentieth of the processor time of a joint state. The partners
+# warn, too, and `mismatch.py` says it when something is missing.
+NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+NO_SUBSCRIPTION_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)

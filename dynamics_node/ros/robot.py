@@ -23,6 +23,9 @@ class Robot:
         The parameter `joints`.
     buffer : JointStateBuffer
         Measured states of all joints of the model.
+    has_all_in_order : bool
+        Whether the chosen joints are those of the model in its order, so that nothing has to
+        be picked out.
 
     """
 
@@ -46,6 +49,7 @@ class Robot:
         self.selection = JointSelection(model, joints)
         self.buffer = JointStateBuffer(model.joint_names, self.selection.names,
                                        model.neutral_position)
+        self.has_all_in_order = self.selection.names == tuple(model.joint_names)
 
     @property
     def joint_names(self):
@@ -54,7 +58,8 @@ class Robot:
 
     def gravity_torque(self):
         """Return G of the chosen joints at the newest state, shape (m,), N m or N."""
-        return self.model.gravity_torque(self.buffer.position)[self.selection.index]
+        G = self.model.gravity_torque(self.buffer.position)
+        return G if self.has_all_in_order else G[self.selection.index]
 
     def measured_position(self, now, timeout):
         """

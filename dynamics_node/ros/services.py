@@ -125,9 +125,13 @@ class _Query:
     def __init__(self, robot, request, timeout):
         selection = robot.selection
         self.model = robot.model
-        order = selection.permutation(request.joint_names)
-        self.names = [selection.names[i] for i in order]
-        self._index = selection.index[order]
+        if request.joint_names:
+            order = selection.permutation(request.joint_names)
+            self.names = [selection.names[i] for i in order]
+            self._index = selection.index[order]
+        else:
+            self.names, self._index = list(selection.names), selection.index
+        self._has_all_in_order = robot.has_all_in_order and not request.joint_names
         if len(request.position):
             self.q = robot.buffer.position
             self.q[self._index] = self._checked('position', request.position)
@@ -144,11 +148,13 @@ class _Query:
 
     def part(self, vector):
         """Return the entries of the wanted joints of a vector of all joints."""
-        return to_field(_finite(vector[self._index]))
+        return to_field(_finite(vector if self._has_all_in_order else vector[self._index]))
 
     def block(self, matrix):
         """Return rows and columns of the wanted joints of a matrix of all joints."""
-        return to_field(_finite(matrix[np.ix_(self._index, self._index)]))
+        if not self._has_all_in_order:
+            matrix = matrix[np.ix_(self._index, self._index)]
+        return to_field(_finite(matrix))
 
     def _checked(self, name, field):
         values = from_field(field)

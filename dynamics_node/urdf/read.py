@@ -12,6 +12,7 @@ from .guard import check_text
 from .inertial import inertial_findings
 from .source import load_text
 from .structure import moved_links, root_link, structure_problems
+from .yourdfpy_parser import urdf_class
 from ..errors import RobotDescriptionError
 
 # What dynamics reads. Everything else (visuals, collisions, meshes, plugins) is dropped before
@@ -100,10 +101,8 @@ def _positive_or_nan(text):
 
 
 def _parse(robot):
-    # Imported here because it takes a second (trimesh), which `import dynamics_node` must not.
-    from yourdfpy import URDF
-    return URDF.load(io.BytesIO(ElementTree.tostring(robot)), build_scene_graph=False,
-                     load_meshes=False).robot
+    return urdf_class().load(io.BytesIO(ElementTree.tostring(robot)), build_scene_graph=False,
+                             load_meshes=False).robot
 
 
 def _links(parsed, moved):

@@ -3,10 +3,11 @@
 import math
 
 from dynamics_node.output import OutputChannel
-from dynamics_node.output.channel import OutputSettings
+from dynamics_node.output.channel import OutputSettings, SHORTEST_LOOK, STOP_STEP
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
+import pytest
 
 LIMITS, RATES = np.array([10.0, 5.0]), np.array([100.0, 50.0])
 TORQUE = np.array([4.0, -2.0])
@@ -198,3 +199,12 @@ def test_no_sequence_of_events_publishes_what_must_not_be_published(behavior, ev
             allowed = RATES * (now - last_time) * (1 + 1e-9) + 1e-12
             assert (np.abs(command - last) <= allowed).all()
             last, last_time = command, now
+
+
+def test_the_next_look_is_when_the_newest_state_becomes_stale_or_a_stop_goes_on():
+    unit = active(state_timeout=0.1)
+    assert unit.next_look(0.03) == pytest.approx(0.07)
+    assert unit.next_look(0.1) == SHORTEST_LOOK
+    assert unit.next_look(math.inf) == SHORTEST_LOOK
+    unit.stop(1.1, 'on request')
+    assert unit.next_look(0.03) == STOP_STEP

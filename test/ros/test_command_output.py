@@ -7,7 +7,7 @@ import signal
 from dynamics_node import RobotModel
 import numpy as np
 import pytest
-from rcl_interfaces.msg import Parameter, ParameterValue
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
@@ -39,8 +39,9 @@ def enabled(client, action):
     return answer
 
 
-def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(client, start):
-    start(robot_description_file=PENDULUM)
+@pytest.mark.parametrize('options', [(), ('--executor', 'rclpy', '--no-raw-states')])
+def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(client, start, options):
+    start(robot_description_file=PENDULUM, options=options)
     client.record_commands()
     publish = level(client)
     client.until(lambda: client.node.count_publishers(TOPIC), publish)
@@ -70,8 +71,9 @@ def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(client, st
     assert client.commands == []
 
 
-def test_stale_states_stop_by_the_ramp_and_latch_a_fault(client, start):
-    start(robot_description_file=PENDULUM, state_timeout=0.1)
+@pytest.mark.parametrize('options', [(), ('--executor', 'rclpy', '--no-raw-states')])
+def test_stale_states_stop_by_the_ramp_and_latch_a_fault(client, start, options):
+    start(robot_description_file=PENDULUM, state_timeout=0.1, options=options)
     client.record_commands()
     publish = level(client)
     enabled(client, publish)
@@ -87,6 +89,29 @@ def test_stale_states_stop_by_the_ramp_and_latch_a_fault(client, start):
     client.during(0.3, publish)
     assert client.outputs[-1].name == 'FAULT'
     enabled(client, publish)
+
+
+def test_a_timeout_that_becomes_shorter_holds_at_once(client, start):
+    start(robot_description_file=PENDULUM, state_timeout=10.0)
+    client.record_commands()
+    enabled(client, level(client))
+    request = SetParameters.Request(parameters=[Parameter(name='state_timeout', value=(
+        ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=0.2)))])
+    [result] = client.call(SetParameters, '/dynamics_node/set_parameters', request,
+                           level(client)).results
+    assert result.successful
+    client.until(client.output_is('FAULT'), timeout=5.0)
+    assert 'limit 0.200 s' in client.outputs[-1].reason
+
+
+def test_half_of_the_joints_alone_do_not_keep_the_output_alive(client, start):
+    arm = RobotModel.from_urdf(ARM7)
+    start(robot_description_file=ARM7)
+    client.record_commands()
+    q = arm.neutral_position
+    enabled(client, lambda: client.publish(arm.joint_names, q))
+    client.until(client.output_is('FAULT'), lambda: client.publish(arm.joint_names[:5], q[:5]))
+    assert 'joint_states stale: last 0.5' in client.outputs[-1].reason
 
 
 def test_efforts_are_clamped_to_the_limit(client, start):

@@ -1,5 +1,7 @@
 """The node over DDS: joint states in, gravity torque and dynamics out."""
 
+import signal
+
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.msg import JointDynamics
 from dynamics_node import RobotModel
@@ -7,6 +9,7 @@ import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from support.robots import ARM7, PENDULUM
@@ -113,6 +116,19 @@ def test_bad_joint_states_are_dropped_and_the_node_goes_on(client, start):
     assert torques == []
     client.until(lambda: torques, lambda: client.publish(['hinge'], [0.0]))
     assert torques[-1].effort[0] == pytest.approx(0.5 * 3 * 0.7 * 9.81)
+
+
+def test_the_log_says_which_publisher_of_joint_states_cannot_be_heard(client, start):
+    process = start(robot_description_file=PENDULUM, **{
+        'qos_overrides./joint_states.subscription.reliability': 'reliable'})
+    client.node.create_publisher(JointState, 'joint_states', qos_profile_sensor_data)
+    client.until(lambda: client.node.count_subscribers('/joint_states'))
+    client.during(7.5)
+    process.send(signal.SIGINT)
+    code, output = process.wait()
+    assert code == 0
+    assert 'no joint state on /joint_states for hinge' in output
+    assert 'the quality of service of /test_client does not fit' in output
 
 
 def test_the_description_comes_from_the_topic_and_a_bad_one_is_survived(client, start):

@@ -1,0 +1,383 @@
+"""
+What the node costs beyond a bare rclpy relay: latency, processor time, services, start.
+
+    python -m benchmarks.node_latency
+    python -m benchmarks.node_latency --executor rclpy --no-raw-states
+
+The node and the relay run in processes of their own, at the same time, and are fed in turn in
+short slices, so that whatever else the machine does hits both. All ratios are of what was
+measured in the same run.
+
+"""
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+import os
+import statistics
+import sys
+import time
+
+from dynamics_interfaces.msg import OutputState
+from dynamics_interfaces.srv import GetMassMatrix
+from dynamics_node import RobotModel
+import numpy as np
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool, Trigger
+
+from .node_processes import node, relay, ROOT
+from .node_stream import Stream
+
+ROBOT = ROOT / 'config' / 'robots' / 'arm7.urdf'
+RATES = (100, 500, 1000)
+# Slices per rate and process, and the length of one, s: shorter than the state timeout.
+SLICES = 9
+SLICE = 0.4
+# Service calls: bursts per kind, and calls per burst.
+BURSTS = 15
+CALLS = 25
+STARTS = 4
+PATIENCE = 30.0
+
+
+@dataclass(frozen=True)
+class Row:
+    """
+    One measured quantity.
+
+    Attributes
+    ----------
+    name : str
+    rate : float or None
+        Of the joint states, Hz.
+    unit : str
+    ours, relay : float
+    ratio : float
+        For a start: not a ratio but the difference, s.
+    spread : tuple of float
+        First and third quartile of the ratio (or difference) over the slices.
+
+    """
+
+    name: str
+    rate: float | None
+    unit: str
+    ours: float
+    relay: float
+    ratio: float
+    spread: tuple[float, float]
+
+
+class Driver:
+    """The one process that feeds both, and listens to both."""
+
+    def __init__(self):
+        """Join ROS with a node that has nothing but what is measured."""
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+        rclpy.init(args=[])
+        self.node = rclpy.create_node('driver', start_parameter_services=False)
+        self.executor = SingleThreadedExecutor()
+        self.executor.add_node(self.node)
+
+    def until(self, condition, action=lambda: None, processes=()):
+        """Spin, doing an action every 10 ms, until a condition holds."""
+        end = time.monotonic() + PATIENCE
+        due = time.monotonic()
+        while not condition():
+            for process in processes:
+                if not process.is_running():
+                    raise RuntimeError(f'a process has ended:\n{process.problem()}')
+            if time.monotonic() > end:
+                raise RuntimeError(f'not within {PATIENCE:g} s: {condition}\n'
+                                   + '\n'.join(process.problem() for process in processes))
+            if time.monotonic() >= due:
+                action()
+                due = time.monotonic() + 0.01
+            self.executor.spin_once(timeout_sec=0.002)
+
+    def call(self, client, request, action=lambda: None):
+        """Return the answer of a service."""
+        self.until(client.service_is_ready, action)
+        future = client.call_async(request)
+        self.until(future.done, action)
+        return future.result()
+
+    def close(self):
+        """Leave ROS."""
+        import rclpy
+        self.executor.shutdown()
+        self.node.destroy_node()
+        rclpy.try_shutdown()
+
+
+def measure(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS, arguments=()):
+    """
+    Measure everything.
+
+    Parameters
+    ----------
+    rates : sequence of float
+        Rates of the joint states, Hz.
+    slices, starts, bursts : int
+        Repetitions; 0 leaves a part out.
+    arguments : sequence of str
+        More of the node's command line: options to compare.
+
+    Returns
+    -------
+    list of Row
+
+    Raises
+    ------
+    RuntimeError
+        If a process ends or does not answer; says what it printed.
+
+    """
+    # A domain of one's own, unless whoever starts this has chosen one.
+    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    os.environ.setdefault('ROS_DOMAIN_ID', str(os.getpid() % 100 + 1))
+    driver = Driver()
+    try:
+        return (measure_streams(driver, rates, slices, arguments)
+                + measure_services(driver, bursts, arguments)
+                + measure_starts(driver, starts, arguments))
+    finally:
+        driver.close()
+
+
+def measure_streams(driver, rates, slices, arguments=()):
+    """Return the rows about latency and processor time of joint states."""
+    if not slices:
+        return []
+    robot = RobotModel.from_urdf(ROBOT)
+    count = int(max(rates) * SLICE)
+    states = _states(robot, count)
+    rows = []
+    with node(ROBOT, *arguments) as ours, relay('states') as bare:
+        streams = [
+            Stream(driver.node, '/ours', robot.joint_names, states, robot.gravity_torque(states)),
+            Stream(driver.node, '/relay', robot.joint_names, states, states)]
+        processes = [ours, bare]
+        for stream in streams:
+            driver.until(stream.is_matched, streams[0].send, processes)
+        keep_on = _Enabler(driver, streams[0])
+        for rate in rates:
+            latencies, cpu = [[], []], [[], []]
+            for index in range(slices):
+                # Both orders, so that what comes first has no advantage.
+                for which in ((0, 1) if index % 2 else (1, 0)):
+                    if which == 0:
+                        keep_on()
+                    before = processes[which].cpu()
+                    answered = streams[which].run(rate, int(rate * SLICE))
+                    latencies[which].append(answered)
+                    cpu[which].append((processes[which].cpu() - before) / len(answered))
+            rows += _stream_rows(rate, latencies, cpu)
+            rows.append(_answered(rate, streams))
+        for stream in streams:
+            stream.close(driver.node)
+    return rows
+
+
+class _Enabler:
+    """Sees to it that the node's output is ACTIVE, so that it answers with commands."""
+
+    def __init__(self, driver, stream):
+        self._driver, self._stream = driver, stream
+        self._state = None
+        driver.node.create_subscription(
+            OutputState, '/ours/dynamics_node/state', self._heard,
+            QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL))
+        self._client = driver.node.create_client(SetBool, '/ours/dynamics_node/enable')
+
+    def __call__(self):
+        for _ in range(3):  # hear of a fault in the pause
+            self._driver.executor.spin_once(timeout_sec=0.0)
+        while self._state != 'ACTIVE':
+            answer = self._driver.call(self._client, SetBool.Request(data=True),
+                                       self._stream.send)
+            if answer.success:
+                self._driver.until(lambda: self._state in ('ACTIVE', 'FAULT'),
+                                   self._stream.send)
+        self._stream.send()
+        time.sleep(0.02)
+
+    def _heard(self, message):
+        self._state = message.name
+
+
+def _states(robot, count):
+    # The second joint moves slowly: a position of its own for every state of a slice, and no
+    # step that a limit would cut.
+    states = np.tile(np.clip(np.full(len(robot.joint_names), 0.3), *robot.position_limits.T),
+                     (count, 1))
+    states[:, 1] += np.linspace(0.0, 0.2, count)
+    return states
+
+
+def _stream_rows(rate, latencies, cpu):
+    ours, bare = ([latency for part in parts for latency in part] for parts in latencies)
+    rows = []
+    for percent in (50, 90, 99):
+        each = [[np.percentile(part, percent) for part in parts] for parts in latencies]
+        a, b = np.percentile(ours, percent), np.percentile(bare, percent)
+        ratios = [x / y for x, y in zip(*each, strict=True)]
+        rows.append(Row(f'latency p{percent}', rate, 'ms', a * 1e3, b * 1e3,
+                        statistics.median(ratios) if percent == 50 else a / b,
+                        _quartiles(ratios)))
+    ratios = [x / y for x, y in zip(*cpu, strict=True)]
+    rows.append(Row('CPU per command', rate, 'ms', statistics.median(cpu[0]) * 1e3,
+                    statistics.median(cpu[1]) * 1e3, statistics.median(ratios),
+                    _quartiles(ratios)))
+    return rows
+
+
+def _answered(rate, streams):
+    # Both ends keep only the newest, so what comes too fast is passed over, not queued.
+    shares = [1.0 - stream.lost / stream.sent for stream in streams]
+    for stream in streams:
+        stream.lost = stream.sent = 0
+    ratio = shares[0] / shares[1] if shares[1] else float('nan')
+    return Row('states answered', rate, '', *shares, ratio, (ratio, ratio))
+
+
+def measure_services(driver, bursts, arguments=()):
+    """Return the rows about get_mass_matrix, each against std_srvs/Trigger."""
+    if not bursts:
+        return []
+    robot = RobotModel.from_urdf(ROBOT)
+    with node(ROBOT, *arguments) as ours, relay('trigger') as bare, ExitStack() as stack:
+        mass = driver.node.create_client(GetMassMatrix, '/ours/dynamics_node/get_mass_matrix')
+        trigger = driver.node.create_client(Trigger, '/relay/relay/trigger')
+        states = driver.node.create_publisher(JointState, '/ours/joint_states', 1)
+        for client in (mass, trigger):
+            stack.callback(driver.node.destroy_client, client)
+        stack.callback(driver.node.destroy_publisher, states)
+        measured = JointState(name=list(robot.joint_names),
+                              position=robot.neutral_position.tolist())
+        for ready in (mass.service_is_ready, trigger.service_is_ready,
+                      states.get_subscription_count):
+            driver.until(ready, processes=[ours, bare])
+
+        def warm(client, request):
+            # The newest state must be fresh, and the caches of both processes warm.
+            end = time.monotonic() + PATIENCE
+            while True:
+                states.publish(measured)
+                time.sleep(0.02)
+                answers = [driver.call(client, request) for _ in range(3)]
+                if answers[-1].success:
+                    return
+                if time.monotonic() > end:
+                    raise RuntimeError(f'expected success, got: {answers[-1].message}')
+
+        requests = [
+            ('get_mass_matrix {}', mass, GetMassMatrix.Request()),
+            ('get_mass_matrix with position', mass,
+             GetMassMatrix.Request(position=robot.neutral_position.tolist())),
+            ('Trigger', trigger, Trigger.Request())]
+        times = [[] for _ in requests]
+        for burst in range(bursts):
+            for step in range(len(requests)):
+                which = (burst + step) % len(requests)
+                _, client, request = requests[which]
+                warm(client, request)
+                times[which].append(_burst(driver, client, request))
+    rows = []
+    for (name, _, _), parts in zip(requests[:-1], times[:-1], strict=True):
+        ratios = [statistics.median(x) / statistics.median(y)
+                  for x, y in zip(parts, times[-1], strict=True)]
+        rows.append(Row(f'{name} p50', None, 'ms', _median_ms(parts), _median_ms(times[-1]),
+                        statistics.median(ratios), _quartiles(ratios)))
+    return rows
+
+
+def _burst(driver, client, request):
+    times = []
+    for _ in range(CALLS):
+        begin = time.perf_counter()
+        future = client.call_async(request)
+        driver.executor.spin_until_future_complete(future)
+        times.append(time.perf_counter() - begin)
+    return times
+
+
+def measure_starts(driver, starts, arguments=()):
+    """Return the row about the time from process start to the first gravity torque."""
+    if not starts:
+        return []
+    robot = RobotModel.from_urdf(ROBOT)
+    measured = JointState(name=list(robot.joint_names), position=robot.neutral_position.tolist())
+    states = driver.node.create_publisher(JointState, '/start/joint_states', 1)
+    ours, bare = [], []
+    # The first start is for the caches of the disk and of compiled kernels.
+    for index in range(starts + 1):
+        pair = [
+            _start(driver, lambda: node(ROBOT, *arguments, namespace='/start'),
+                   '/start/dynamics_node/gravity_torque', lambda: states.publish(measured)),
+            _start(driver, lambda: relay('torque', namespace='/start'),
+                   '/start/relay/gravity_torque', lambda: states.publish(measured))]
+        if index:
+            ours.append(pair[0])
+            bare.append(pair[1])
+    driver.node.destroy_publisher(states)
+    differences = [a - b for a, b in zip(ours, bare, strict=True)]
+    return [Row('start to first torque, beyond rclpy', None, 's', statistics.median(ours),
+                statistics.median(bare), statistics.median(differences),
+                _quartiles(differences))]
+
+
+def _start(driver, start, topic, publish):
+    received = []
+    subscription = driver.node.create_subscription(JointState, topic, received.append, 1)
+    begin = time.perf_counter()
+    with start() as process:
+        driver.until(lambda: received, publish, [process])
+        elapsed = time.perf_counter() - begin
+    driver.node.destroy_subscription(subscription)
+    return elapsed
+
+
+def _median_ms(parts):
+    return statistics.median(value for part in parts for value in part) * 1e3
+
+
+def _quartiles(values):
+    low, _, high = np.percentile(values, (25, 50, 75))
+    return float(low), float(high)
+
+
+def table(rows):
+    """
+    Return rows as a markdown table.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+
+    Returns
+    -------
+    str
+
+    """
+    lines = ['| what | joint states | node | bare rclpy | ratio | quartiles |',
+             '|---|---|---|---|---|---|']
+    for row in rows:
+        rate = f'{row.rate:g} Hz' if row.rate else ''
+        ratio = f'+{row.ratio:.2f} s' if row.unit == 's' else f'{row.ratio:.2f}'
+        lines.append(f'| {row.name} | {rate} | {row.ours:.3g} {row.unit} | {row.relay:.3g} '
+                     f'{row.unit} | {ratio} | {row.spread[0]:.2f} to {row.spread[1]:.2f} |')
+    return '\n'.join(lines)
+
+
+def main():
+    """Print the table; further arguments go to the node."""
+    begin = time.monotonic()
+    rows = measure(arguments=sys.argv[1:])
+    print(table(rows))
+    print(f'measured in {time.monotonic() - begin:.0f} s', file=sys.stderr)
+
+
+if __name__ == '__main__':
+    main()

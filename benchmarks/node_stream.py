@@ -1,0 +1,141 @@
+"""A stream of joint states to one process, and the commands that come back, matched one by one."""
+
+from array import array
+import bisect
+import time
+
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
+
+# Time after the last state in which its command may still come, s.
+LATE = 0.05
+
+
+class Stream:
+    """
+    Feeds one process and notes when which command comes back.
+
+    A Float64MultiArray has no stamp. So every state of a slice has a position of its own, the
+    command that belongs to it is known, and one number of it, which grows along the slice,
+    tells which state it answers.
+
+    Attributes
+    ----------
+    sent, lost : int
+        States of all slices since they were set to zero, and those without an answer.
+
+    """
+
+    def __init__(self, node, namespace, names, positions, answers):
+        """
+        Create publisher and subscription.
+
+        Parameters
+        ----------
+        node : rclpy.node.Node
+            Of the driver; nobody spins it, because an executor would be measured, too.
+        namespace : str
+            Of the process.
+        names : sequence of str
+            Joint names.
+        positions : numpy.ndarray, shape (count, n)
+            The states of a slice, rad or m.
+        answers : numpy.ndarray, shape (count, n)
+            The commands that belong to them; one column grows strictly.
+
+        """
+        self._context = node.context
+        self._messages = [JointState(name=list(names), position=array('d', row),
+                                     velocity=array('d', [0.0] * len(row)))
+                          for row in positions]
+        for message in self._messages:  # as a robot's: without a stamp the node takes its own
+            message.header.stamp = node.get_clock().now().to_msg()
+        steps = (answers[1:] - answers[:-1]).min(axis=0)
+        self._column = int(steps.argmax())
+        if steps[self._column] <= 0.0:
+            raise ValueError('expected a column of answers that grows strictly, got none')
+        self._tolerance = 0.1 * steps[self._column]
+        self._keys = answers[:, self._column].tolist()
+        self._publisher = node.create_publisher(
+            JointState, f'{namespace}/joint_states',
+            QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE))
+        self._subscription = node.create_subscription(
+            Float64MultiArray, f'{namespace}/forward_effort_controller/commands',
+            lambda message: None,
+            QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE))
+        self._wait_set = _rclpy.WaitSet(1, 0, 0, 0, 0, 0, self._context.handle)
+        self.sent = self.lost = 0
+
+    def is_matched(self):
+        """Tell whether both directions have found each other."""
+        return bool(self._publisher.get_subscription_count()
+                    and self._subscription.get_publisher_count())
+
+    def send(self, index=0):
+        """Publish one state of the slice, without waiting for its command."""
+        self._publisher.publish(self._messages[index])
+
+    def drain(self):
+        """Forget the commands that have come."""
+        while self._take() is not None:
+            pass
+
+    def run(self, rate, count):
+        """
+        Send states at a fixed rate.
+
+        Parameters
+        ----------
+        rate : float
+            Hz.
+        count : int
+            How many.
+
+        Returns
+        -------
+        list of float
+            From publish to the command received, s, of every state that was answered.
+
+        """
+        self.drain()
+        sent, latencies = [0.0] * count, [None] * count
+        begin = time.perf_counter() + 0.002
+        for index in range(count):
+            self._receive_until(begin + index / rate, sent, latencies)
+            sent[index] = time.perf_counter()
+            self._publisher.publish(self._messages[index])
+        self._receive_until(time.perf_counter() + LATE, sent, latencies)
+        answered = [latency for latency in latencies if latency is not None]
+        self.sent += count
+        self.lost += count - len(answered)
+        return answered
+
+    def close(self, node):
+        """Take publisher and subscription away from the node again."""
+        node.destroy_publisher(self._publisher)
+        node.destroy_subscription(self._subscription)
+
+    def _receive_until(self, end, sent, latencies):
+        while (left := end - time.perf_counter()) > 0.0:
+            self._wait_set.clear_entities()
+            self._wait_set.add_subscription(self._subscription.handle)
+            self._wait_set.wait(int(left * 1e9))
+            now = time.perf_counter()
+            while (message := self._take()) is not None:
+                index = self._index(message.data[self._column])
+                if index is not None and latencies[index] is None:
+                    latencies[index] = now - sent[index]
+
+    def _take(self):
+        taken = self._subscription.handle.take_message(Float64MultiArray, False)
+        return None if taken is None else taken[0]
+
+    def _index(self, key):
+        # The nearest of the known answers, if it is one of them at all: on the start ramp, for
+        # example, commands answer to no state of the slice.
+        right = bisect.bisect_left(self._keys, key - self._tolerance)
+        if right < len(self._keys) and abs(self._keys[right] - key) <= self._tolerance:
+            return right
+        return None

@@ -1,0 +1,32 @@
+"""Options of the process, as opposed to parameters of the node."""
+
+import argparse
+
+from rclpy.utilities import remove_ros_args
+
+from .executor import EXECUTORS
+
+
+def parse(arguments):
+    """
+    Read the command line.
+
+    Parameters
+    ----------
+    arguments : list of str
+        Program first; what belongs to ROS or is unknown is passed over.
+
+    Returns
+    -------
+    argparse.Namespace
+        executor : str, a key of EXECUTORS. raw_states : bool.
+
+    """
+    parser = argparse.ArgumentParser(description='Robot dynamics as a ROS 2 node.')
+    parser.add_argument('--executor', choices=sorted(EXECUTORS), default='lean',
+                        help="rclpy: rclpy's SingleThreadedExecutor; lean: the same for less "
+                        'processor time, resting on the inside of rclpy 7.1')
+    parser.add_argument('--raw-states', action=argparse.BooleanOptionalAction, default=True,
+                        help='read joint_states from the bytes on the wire: less time from '
+                        'state to command')
+    return parser.parse_known_args(remove_ros_args(arguments)[1:])[0]

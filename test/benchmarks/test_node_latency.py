@@ -1,0 +1,35 @@
+"""The instrument measures what it says, with the real node and the real relay."""
+
+import math
+from pathlib import Path
+import subprocess
+import sys
+
+ROOT = Path(__file__).parents[2]
+# In a process of its own: it joins ROS by itself.
+CODE = """
+from benchmarks.node_latency import measure, table
+rows = measure(rates=(50,), slices=2, starts=1, bursts=1)
+for row in rows:
+    print(row.name, row.ours, row.relay, row.ratio, sep=';')
+assert len(table(rows).splitlines()) == len(rows) + 2
+"""
+
+
+def test_every_row_is_measured_and_states_are_answered():
+    done = subprocess.run([sys.executable, '-c', CODE], cwd=ROOT, capture_output=True, text=True,
+                          timeout=110.0, check=False)
+    assert done.returncode == 0, done.stderr
+    rows = {}
+    for line in done.stdout.splitlines():
+        name, *values = line.split(';')
+        rows[name] = [float(value) for value in values]
+    assert list(rows) == [
+        'latency p50', 'latency p90', 'latency p99', 'CPU per command', 'states answered',
+        'get_mass_matrix {} p50', 'get_mass_matrix with position p50',
+        'start to first torque, beyond rclpy']
+    assert all(math.isfinite(value) for values in rows.values() for value in values)
+    ours, relay, _ = rows['states answered']
+    assert ours > 0.5 and relay > 0.5
+    # ms: a command that was matched to another state would come before it, or a slice later.
+    assert all(0.05 < value < 200.0 for value in rows['latency p50'][:2])

@@ -1,0 +1,77 @@
+"""Joint states read from bytes are those that rclpy reads."""
+
+from array import array
+
+from dynamics_node.ros import joint_state_reader
+from dynamics_node.ros.joint_state_reader import JointStateReader
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import JointState
+
+numbers = st.lists(st.floats(width=64), max_size=5)
+names = st.lists(st.text(st.characters(codec='utf-8', exclude_characters='\x00'), max_size=9),
+                 max_size=5)
+
+
+@st.composite
+def states(draw, name=names):
+    message = JointState(name=draw(name), position=draw(numbers), velocity=draw(numbers),
+                         effort=draw(numbers))
+    message.header.frame_id = draw(st.sampled_from(['', 'base', 'world']))
+    message.header.stamp.sec = draw(st.integers(-2**31, 2**31 - 1))
+    message.header.stamp.nanosec = draw(st.integers(0, 2**32 - 1))
+    return message
+
+
+def assert_same(read, data):
+    expected = deserialize_message(data, JointState)
+    assert list(read.name) == list(expected.name)
+    assert read.header == expected.header
+    # As bytes: NaN is not equal to itself.
+    assert read.position.tobytes() == expected.position.tobytes()
+    assert read.velocity.tobytes() == expected.velocity.tobytes()
+    assert read.effort == array('d')
+
+
+@given(st.lists(states(), max_size=6))
+def test_any_sequence_is_read_as_rclpy_reads_it(sequence):
+    reader = JointStateReader()
+    for message in sequence:
+        data = serialize_message(message)
+        assert_same(reader.read(data), data)
+
+
+@given(st.lists(states(name=st.just(['shoulder', 'elbow', 'wrist'])), min_size=2, max_size=6))
+def test_states_of_the_same_joints_are_read_as_rclpy_reads_them(sequence):
+    reader = JointStateReader()
+    for message in sequence:
+        data = serialize_message(message)
+        assert_same(reader.read(data), data)
+
+
+def test_the_names_are_read_once(monkeypatch):
+    reader = JointStateReader()
+    message = JointState(name=['a', 'b'], position=[1.0, 2.0])
+    reader.read(serialize_message(message))
+    monkeypatch.setattr(joint_state_reader, 'deserialize_message', None)
+    message.position = [3.0, 4.0]
+    message.header.stamp.sec = 7
+    read = reader.read(serialize_message(message))
+    assert list(read.position) == [3.0, 4.0]
+    assert read.header.stamp.sec == 7
+    message.name = ['a', 'c']
+    with pytest.raises(TypeError):  # the names are new: rclpy would be asked
+        reader.read(serialize_message(message))
+
+
+@pytest.mark.parametrize('length', [0, 3, 11, 30, 40, 48, 60])
+def test_what_was_cut_is_left_to_rclpy(length):
+    reader = JointStateReader()
+    data = serialize_message(JointState(name=['a', 'b'], position=[1.0, 2.0], velocity=[3.0, 4.0]))
+    assert list(reader.read(data).velocity) == [3.0, 4.0]
+    assert length < len(data)
+    with pytest.raises(Exception, match='deserialize'):
+        reader.read(data[:length])
+    assert list(reader.read(data).position) == [1.0, 2.0]

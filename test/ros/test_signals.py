@@ -1,0 +1,50 @@
+"""A signal ends a wait that Python would not see it in."""
+
+import subprocess
+import sys
+import time
+
+CODE = """
+import os, signal, threading, time
+from dynamics_node.ros.signals import Signals
+signals = Signals()
+woken = threading.Event()
+signals.call(woken.set)
+threading.Timer(0.2, os.kill, (os.getpid(), signal.SIG{name})).start()
+woken.wait()
+while not signals.name:
+    time.sleep(0.001)
+print(signals.name)
+{more}
+"""
+
+
+def run(name, more=''):
+    """Run code that gets a signal; return exit code, output and duration."""
+    begin = time.monotonic()
+    done = subprocess.run([sys.executable, '-c', CODE.format(name=name, more=more)],
+                          capture_output=True, text=True, timeout=30.0, check=False)
+    return done.returncode, done.stdout, done.stderr, time.monotonic() - begin
+
+
+def test_the_first_signal_is_noted_and_ends_the_wait():
+    for name in ('INT', 'TERM'):
+        code, out, err, duration = run(name)
+        assert (code, out, err) == (0, f'SIG{name}\n', '')
+        assert duration < 10.0
+
+
+def test_the_second_signal_ends_the_process():
+    code, out, err, _ = run('INT', 'os.kill(os.getpid(), signal.SIGTERM); time.sleep(60)')
+    assert (code, out, err) == (0, 'SIGINT\n', '')
+
+
+def test_a_wait_that_is_gone_is_no_error():
+    code = CODE.replace('signals.call(woken.set)', """
+def gone():
+    woken.set()
+    raise RuntimeError('destroyed')
+signals.call(gone)""").format(name='INT', more='time.sleep(0.1)')
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                          timeout=30.0, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, 'SIGINT\n', '')
