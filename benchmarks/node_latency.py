@@ -111,7 +111,7 @@ class Driver:
         rclpy.try_shutdown()
 
 
-def measure(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS, arguments=()):
+def measure_all(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS, arguments=()):
     """
     Measure everything.
 
@@ -146,6 +146,22 @@ def measure(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS, arguments=
         driver.close()
 
 
+def measure():
+    """Return the rows of `measure_all` as the report wants them: column title → text."""
+    return [{'what': row.name, 'joint states': f'{row.rate:g} Hz' if row.rate else '',
+             'node': f'{row.ours:.3g} {row.unit}', 'bare rclpy': f'{row.relay:.3g} {row.unit}',
+             'ratio': _ratio_text(row), 'quartiles': _quartiles_text(row)}
+            for row in measure_all()]
+
+
+def _ratio_text(row):
+    return f'+{row.ratio:.2f} s' if row.unit == 's' else f'{row.ratio:.2f}'
+
+
+def _quartiles_text(row):
+    return f'{row.spread[0]:.2f} to {row.spread[1]:.2f}'
+
+
 def measure_streams(driver, rates, slices, arguments=()):
     """Return the rows about latency and processor time of joint states."""
     if not slices:
@@ -163,7 +179,8 @@ def measure_streams(driver, rates, slices, arguments=()):
             driver.until(stream.is_matched, streams[0].send, processes)
         keep_on = _Enabler(driver, streams[0])
         for rate in rates:
-            latencies, cpu = [[], []], [[], []]
+            latencies: list[list] = [[], []]
+            cpu: list[list] = [[], []]
             for index in range(slices):
                 # Both orders, so that what comes first has no advantage.
                 for which in ((0, 1) if index % 2 else (1, 0)):
@@ -239,7 +256,8 @@ def _answered(rate, streams):
     for stream in streams:
         stream.lost = stream.sent = 0
     ratio = shares[0] / shares[1] if shares[1] else float('nan')
-    return Row('states answered', rate, '', *shares, ratio, (ratio, ratio))
+    ours, relay = shares
+    return Row('states answered', rate, '', ours, relay, ratio, (ratio, ratio))
 
 
 def measure_services(driver, bursts, arguments=()):
@@ -277,7 +295,7 @@ def measure_services(driver, bursts, arguments=()):
             ('get_mass_matrix with position', mass,
              GetMassMatrix.Request(position=robot.neutral_position.tolist())),
             ('Trigger', trigger, Trigger.Request())]
-        times = [[] for _ in requests]
+        times: list[list] = [[] for _ in requests]
         for burst in range(bursts):
             for step in range(len(requests)):
                 which = (burst + step) % len(requests)
@@ -329,7 +347,7 @@ def measure_starts(driver, starts, arguments=()):
 
 
 def _start(driver, start, topic, publish):
-    received = []
+    received: list = []
     subscription = driver.node.create_subscription(JointState, topic, received.append, 1)
     begin = time.perf_counter()
     with start() as process:
@@ -365,16 +383,15 @@ def table(rows):
              '|---|---|---|---|---|---|']
     for row in rows:
         rate = f'{row.rate:g} Hz' if row.rate else ''
-        ratio = f'+{row.ratio:.2f} s' if row.unit == 's' else f'{row.ratio:.2f}'
         lines.append(f'| {row.name} | {rate} | {row.ours:.3g} {row.unit} | {row.relay:.3g} '
-                     f'{row.unit} | {ratio} | {row.spread[0]:.2f} to {row.spread[1]:.2f} |')
+                     f'{row.unit} | {_ratio_text(row)} | {_quartiles_text(row)} |')
     return '\n'.join(lines)
 
 
 def main():
     """Print the table; further arguments go to the node."""
     begin = time.monotonic()
-    rows = measure(arguments=sys.argv[1:])
+    rows = measure_all(arguments=sys.argv[1:])
     print(table(rows))
     print(f'measured in {time.monotonic() - begin:.0f} s', file=sys.stderr)
 

@@ -31,7 +31,7 @@ class Results:
         As `memory.peak_besides_result` returns it.
     growth : list of GrowthRow
     sections : dict of str to Section
-        'node' and 'start_up'.
+        'node'.
     seconds : float
         How long the run took.
 

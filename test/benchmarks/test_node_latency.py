@@ -8,8 +8,8 @@ import sys
 ROOT = Path(__file__).parents[2]
 # In a process of its own: it joins ROS by itself.
 CODE = """
-from benchmarks.node_latency import measure, table
-rows = measure(rates=(50,), slices=2, starts=1, bursts=1)
+from benchmarks.node_latency import measure_all, table
+rows = measure_all(rates=(50,), slices=2, starts=1, bursts=1)
 for row in rows:
     print(row.name, row.ours, row.relay, row.ratio, sep=';')
 assert len(table(rows).splitlines()) == len(rows) + 2

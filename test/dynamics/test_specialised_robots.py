@@ -1,4 +1,4 @@
-"""A robot's own machine code meets the promise of the general kernel, on real and extreme robots."""
+"""A robot's own machine code keeps the promise, on real and on extreme robots."""
 
 from dynamics_node import RobotModel
 import pytest

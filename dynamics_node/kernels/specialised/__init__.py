@@ -13,7 +13,15 @@ What may change here: how the formulas become machine code, never the formulas.
 """
 
 from .call import is_supported, make_callable
-from .robot_code import are_ordinary, from_disk, is_wanted, make, make_in_background, RobotCode
+from .robot_code import (
+           abandon,
+           are_ordinary,
+           from_disk,
+           is_wanted,
+           make,
+           make_in_background,
+           RobotCode,
+)
 
-__all__ = ['RobotCode', 'are_ordinary', 'from_disk', 'is_supported', 'is_wanted', 'make',
-           'make_callable', 'make_in_background']
+__all__ = ['RobotCode', 'abandon', 'are_ordinary', 'from_disk', 'is_supported', 'is_wanted',
+           'make', 'make_callable', 'make_in_background']

@@ -69,14 +69,14 @@ def compile_code(text):
 class LoadedCode:
     """Machine code in memory; it stays there as long as this object."""
 
-    def __init__(self, object_file):
+    def __init__(self, object_files):
         """
-        Load an object file.
+        Load object files.
 
         Parameters
         ----------
-        object_file : bytes
-            As `compile_code` returns it.
+        object_files : sequence of bytes
+            As `compile_code` returns them.
 
         Raises
         ------
@@ -85,7 +85,8 @@ class LoadedCode:
 
         """
         self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(''), _target())
-        self._engine.add_object_file(llvm.ObjectFileRef.from_data(object_file))
+        for object_file in object_files:
+            self._engine.add_object_file(llvm.ObjectFileRef.from_data(object_file))
         self._engine.finalize_object()
 
     def address(self, name):

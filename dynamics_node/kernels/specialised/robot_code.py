@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import struct
 import threading
 
 import numpy as np
@@ -17,6 +18,14 @@ _BATCHED = ('dynamics', 'mass_matrix', 'gravity_torque', 'inverse_dynamics')
 # How closely the result of the machine code must meet the general kernel's when it is loaded. Both
 # are right to 1e-14; this tells damaged code from rounding.
 _AGREEMENT = 1e-9
+
+_SIZE = struct.Struct('<Q')
+_abandoned = threading.Event()
+
+
+def abandon():
+    """Make no more machine code in this process: what is being made ends after its next step."""
+    _abandoned.set()
 
 
 def is_wanted():
@@ -36,7 +45,7 @@ class RobotCode:
 
     """
 
-    def __init__(self, structure, numbers, object_file):
+    def __init__(self, structure, numbers, object_files):
         """
         Load machine code and compare it with the general kernel.
 
@@ -44,8 +53,8 @@ class RobotCode:
         ----------
         structure, numbers : numpy.ndarray
             See `packing.pack`.
-        object_file : bytes
-            As `compile_robot` returns it.
+        object_files : bytes
+            As `compile_robot` returns them.
 
         Raises
         ------
@@ -54,7 +63,7 @@ class RobotCode:
 
         """
         self.lanes = machine.lanes()
-        self.loaded = machine.LoadedCode(object_file)
+        self.loaded = machine.LoadedCode(_split(object_files))
         self._batch = {name: self._batch_function(name) for name in _BATCHED}
         self._compare(structure, numbers)
 
@@ -132,7 +141,8 @@ def compile_robot(structure, numbers):
     Returns
     -------
     bytes or None
-        An object file; None if the robot is too large for straight-line code.
+        Object files, one per quantity; None if the robot is too large for straight-line code, or
+        after `abandon`.
 
     Raises
     ------
@@ -141,16 +151,30 @@ def compile_robot(structure, numbers):
 
     """
     lanes = machine.lanes()
-    parts = [*code.declarations(lanes), call.DECLARATIONS]
+    objects = []
     for record in quantities.ALL:
+        if _abandoned.is_set():
+            return None
         try:
             quantity = record(structure, numbers)
         except ProgramTooLongError:
             return None
-        parts += [functions.state_function(quantity), call.entry_function(quantity)]
+        parts = [*code.declarations(lanes), call.DECLARATIONS,
+                 functions.state_function(quantity), call.entry_function(quantity)]
         if quantity.name in _BATCHED:
             parts.append(functions.batch_function(quantity, lanes))
-    return machine.compile_code('\n'.join(parts))
+        objects.append(machine.compile_code('\n'.join(parts)))
+    return b''.join(_SIZE.pack(len(item)) + item for item in objects)
+
+
+def _split(content):
+    objects, at = [], 0
+    while at < len(content):
+        size, = _SIZE.unpack_from(content, at)
+        at += _SIZE.size
+        objects.append(content[at:at + size])
+        at += size
+    return objects
 
 
 def from_disk(structure, numbers):
@@ -167,11 +191,11 @@ def from_disk(structure, numbers):
     RobotCode or None
 
     """
-    object_file = store.load(store.key(structure, numbers))
-    if object_file is None:
+    object_files = store.load(store.key(structure, numbers))
+    if object_files is None:
         return None
     try:
-        return RobotCode(structure, numbers, object_file)
+        return RobotCode(structure, numbers, object_files)
     except RuntimeError:
         return None
 
@@ -188,7 +212,7 @@ def make(structure, numbers):
     Returns
     -------
     RobotCode or None
-        None if the robot is too large for straight-line code.
+        None if the robot is too large for straight-line code, or after `abandon`.
 
     Raises
     ------
@@ -199,11 +223,11 @@ def make(structure, numbers):
     ready = from_disk(structure, numbers)
     if ready is not None:
         return ready
-    object_file = compile_robot(structure, numbers)
-    if object_file is None:
+    object_files = compile_robot(structure, numbers)
+    if object_files is None:
         return None
-    store.save(store.key(structure, numbers), object_file)
-    return RobotCode(structure, numbers, object_file)
+    store.save(store.key(structure, numbers), object_files)
+    return RobotCode(structure, numbers, object_files)
 
 
 def make_in_background(structure, numbers, when_ready):
@@ -220,7 +244,7 @@ def make_in_background(structure, numbers, when_ready):
     Returns
     -------
     threading.Thread
-        Python waits for it at exit: some seconds at most.
+        Python waits for it at exit, some seconds at most, unless `abandon` was called.
 
     """
     def work():

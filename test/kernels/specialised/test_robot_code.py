@@ -1,5 +1,7 @@
 """A robot's machine code: made once, found again, compared before it is used."""
 
+import threading
+
 from dynamics_node import RobotModel
 from dynamics_node.kernels.packing import pack
 from dynamics_node.kernels.specialised import robot_code, store
@@ -40,6 +42,15 @@ def test_the_background_tells_when_it_is_ready(packed):
     answers = []
     robot_code.make_in_background(*packed, answers.append).join()
     assert isinstance(answers[0], robot_code.RobotCode)
+
+
+def test_what_is_being_made_can_be_abandoned(packed, monkeypatch, folder):
+    monkeypatch.setattr(robot_code, '_abandoned', threading.Event())
+    robot_code.abandon()
+    answers = []
+    robot_code.make_in_background(*packed, answers.append).join()
+    assert answers == [None]
+    assert list(folder.iterdir()) == []
 
 
 def test_a_robot_with_very_many_joints_gets_none():
