@@ -125,15 +125,16 @@ class Evaluation:
     def forward_dynamics(self, q, qd, tau, *, threads=None):
         """Return the accelerations that efforts cause, by a Cholesky factorisation of D."""
         lead, [q, qd, tau] = self.states(q=q, qd=qd, tau=tau)
-        bias = self.inverse_dynamics(q, qd, np.zeros_like(q), threads=threads)
-        try:
-            L = np.linalg.cholesky(self.mass_matrix(q, threads=threads))
-        except np.linalg.LinAlgError as error:
+        qdd, sound = np.empty_like(q), np.empty(len(q), dtype=bool)
+        if self.specialisation.code is None:
+            self.specialisation.count(len(q))
+        _in_pieces(lambda arrays, outputs: closed_form.forward_dynamics(
+            *self.packed, *arrays, *outputs), [q, qd, tau], [qdd, sound], len(q), threads)
+        if not sound.all():
             raise SingularMassMatrixError(
                 'the mass matrix is not positive definite, expected inertia behind every joint: '
-                'check the <inertial> of the moving links') from error
-        half = np.linalg.solve(L, (tau - bias)[..., None])
-        return np.linalg.solve(L.swapaxes(-1, -2), half).reshape(*lead, self._n)
+                'check the <inertial> of the moving links')
+        return qdd.reshape(*lead, self._n)
 
     def kinetic_energy(self, q, qd):
         """Return T with the batch axes of q and qd."""
@@ -158,13 +159,8 @@ class Evaluation:
         code = self.specialisation.code
         if code is None:
             self.specialisation.count(count)
-        if count <= _PIECE:
-            self._compute(code, name, arrays, outputs)
-        else:
-            def compute(arrays, outputs):
-                self._compute(code, name, arrays, outputs)
-
-            _in_pieces(compute, arrays, outputs, count, threads)
+        _in_pieces(lambda arrays, outputs: self._compute(code, name, arrays, outputs),
+                   arrays, outputs, count, threads)
         if out is not None:
             return out
         if not lead:
@@ -190,6 +186,9 @@ _KERNELS = {'dynamics': closed_form.dynamics, 'mass_matrix': closed_form.mass_ma
 def _in_pieces(compute, arrays, outputs, count, threads):
     # compute(rows of the arrays, rows of the outputs) in pieces of about equal size.
     pieces = math.ceil(count / _PIECE)
+    if pieces <= 1:
+        compute(arrays, outputs)
+        return
     if threads is None:
         threads = len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else 1
 

@@ -134,6 +134,33 @@ def inverse_dynamics(structure, numbers, q, qd, qdd, tau):
         inverse_dynamics_of_state(structure, numbers, q[b], qd[b], qdd[b], work, tau[b])
 
 
+@compiled
+def forward_dynamics(structure, numbers, q, qd, tau, qdd, sound):
+    """
+    Compute the accelerations that the efforts of B states cause.
+
+    Parameters
+    ----------
+    structure, numbers : numpy.ndarray
+        See `packing.pack`.
+    q, qd, tau : numpy.ndarray, shape (B, n)
+        Joint positions (rad or m), velocities, efforts.
+    qdd : numpy.ndarray, shape (B, n)
+        Overwritten.
+    sound : numpy.ndarray of bool, shape (B,)
+        Overwritten: False where D is not positive definite, so qdd means nothing.
+
+    """
+    work, n = workspace(structure.shape[0]), q.shape[1]
+    D, pivots, rest = np.empty((n, n)), np.empty(n), np.zeros(n)
+    for b in range(q.shape[0]):
+        D[:], qdd[b] = 0.0, 0.0
+        forward_dynamics_of_state(structure, numbers, q[b], qd[b], tau[b], rest, work, D, pivots,
+                                  qdd[b])
+        # Written so that NaN passes, and comes out as NaN.
+        sound[b] = not (pivots <= 0.0).any()
+
+
 # One state ---------------------------------------------------------------------------------
 
 
@@ -184,6 +211,48 @@ def inverse_dynamics_of_state(structure, numbers, q, qd, qdd, work, tau):
     outward_acceleration(structure, numbers, qd, qdd, pose, twist, velocity, twist_rate,
                          acceleration)
     inward_efforts(structure, numbers, pose, twist, velocity, acceleration, K, wrench, tau)
+
+
+@formula
+def forward_dynamics_of_state(structure, numbers, q, qd, tau, rest, work, D, pivots, qdd):
+    """Solve D qdd = tau - (C qd + G), equation (1); D and qdd are zeros before, `rest` is."""
+    inverse_dynamics_of_state(structure, numbers, q, qd, rest, work, qdd)
+    for i in range(qdd.shape[0]):
+        qdd[i] = tau[i] - qdd[i]
+    mass_matrix_of_state(structure, numbers, q, work, D)
+    solve_positive_definite(D, qdd, pivots)
+
+
+@formula
+def solve_positive_definite(D, x, pivots):
+    """
+    Solve D x = b in place by Cholesky without square roots, D = L diag(pivots) Lᵀ.
+
+    Parameters
+    ----------
+    D : numpy.ndarray, shape (n, n)
+        L below the diagonal afterwards.
+    x : numpy.ndarray, shape (n,)
+        b before.
+    pivots : numpy.ndarray, shape (n,)
+        Overwritten: all positive if D is positive definite.
+
+    """
+    n = x.shape[0]
+    for j in range(n):
+        pivots[j] = D[j, j]
+        for k in range(j):
+            pivots[j] = pivots[j] - D[j, k] * D[j, k] * pivots[k]
+        inverse = 1.0 / pivots[j]
+        for i in range(j + 1, n):
+            for k in range(j):
+                D[i, j] = D[i, j] - D[i, k] * D[j, k] * pivots[k]
+            D[i, j] = D[i, j] * inverse
+            x[i] = x[i] - D[i, j] * x[j]
+    for i in range(n - 1, -1, -1):
+        x[i] = x[i] * (1.0 / pivots[i])
+        for k in range(i + 1, n):
+            x[i] = x[i] - D[k, i] * x[k]
 
 
 # From the base to the tips -----------------------------------------------------------------

@@ -23,6 +23,7 @@ def warm_up():
     closed_form.mass_matrix(structure, numbers, q, matrix)
     closed_form.gravity_torque(structure, numbers, q, vector, np.empty(1))
     closed_form.inverse_dynamics(structure, numbers, q, q, q, vector)
+    closed_form.forward_dynamics(structure, numbers, q, q, q, vector, np.empty(1, dtype=bool))
 
 
 if __name__ == '__main__':

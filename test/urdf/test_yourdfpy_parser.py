@@ -7,7 +7,7 @@ import sys
 from dynamics_node.urdf import yourdfpy_parser
 import numpy as np
 import pytest
-from support.robots import ARM7, PENDULUM, PUBLIC, public_robot
+from support.robots import ARM7, PENDULUM, public_robot
 
 ROOT = Path(__file__).parents[2]
 BOX = ('<robot name="box"><link name="base"><visual><geometry><box size="1 2 3"/></geometry>'
@@ -53,6 +53,12 @@ def test_a_yourdfpy_that_is_made_up_differently_is_loaded_whole(monkeypatch):
     monkeypatch.delitem(sys.modules, 'yourdfpy')
     monkeypatch.setattr(yourdfpy_parser, '_folder', missing)
     assert yourdfpy_parser.urdf_class.__wrapped__().__name__ == yourdfpy.URDF.__name__
+
+
+# Among them mimic joints and meshes.
+PUBLIC = ('panda_description/urdf/panda.urdf', 'ur_description/urdf/ur5_robot.urdf',
+          'baxter_description/urdf/baxter.urdf', 'tiago_description/robots/tiago.urdf',
+          'icub_description/robots/icub.urdf', 'g1_description/urdf/g1_29dof_rev_1_0.urdf')
 
 
 @pytest.mark.parametrize('name', ['arm7', 'pendulum', *PUBLIC])

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .symbols import Program, Symbol
+from .symbols import Program
 from .. import closed_form
 
 # Straight-line code grows with the square of the joints. Beyond this it takes long to compile
@@ -119,12 +119,15 @@ def forward_dynamics(structure, numbers):
     """Record the accelerations that efforts cause, D q̈ = τ - (C q̇ + G)."""
     robot = _Robot(structure, numbers)
     q, qd, tau = robot.inputs('q'), robot.inputs('qd'), robot.inputs('tau')
-    bias, D = robot.zeros(robot.n), robot.zeros(robot.n, robot.n)
-    closed_form.inverse_dynamics_of_state(structure, robot.numbers, q, qd, robot.zeros(robot.n),
-                                          robot.work, bias)
-    closed_form.mass_matrix_of_state(structure, robot.numbers, q, robot.work, D)
-    qdd, pivots = _solved(D, tau - bias)
-    return Quantity('forward_dynamics', robot.n, ('q', 'qd', 'tau'), robot.program, (qdd,), pivots)
+    D, qdd, pivots = robot.zeros(robot.n, robot.n), robot.zeros(robot.n), robot.zeros(robot.n)
+    try:
+        closed_form.forward_dynamics_of_state(structure, robot.numbers, q, qd, tau,
+                                              robot.zeros(robot.n), robot.work, D, pivots, qdd)
+    except ZeroDivisionError:
+        # A pivot is zero whatever the state: `positive` says that the result means nothing.
+        qdd, pivots = robot.zeros(robot.n), robot.zeros(1)
+    return Quantity('forward_dynamics', robot.n, ('q', 'qd', 'tau'), robot.program, (qdd,),
+                    tuple(pivots))
 
 
 ALL = (gravity_torque, dynamics, inverse_dynamics, mass_matrix, forward_dynamics,
@@ -135,27 +138,3 @@ SIGNATURES = {
     'gravity_torque': (('q',), 1), 'dynamics': (('q', 'qd'), 3),
     'inverse_dynamics': (('q', 'qd', 'qdd'), 1), 'mass_matrix': (('q',), 1),
     'forward_dynamics': (('q', 'qd', 'tau'), 1), 'coriolis_matrix': (('q', 'qd'), 1)}
-
-
-def _solved(D, right):
-    # D x = right by Cholesky without square roots, D = L diag(pivots) Lᵀ.
-    x, n = right.copy(), len(right)
-    L = D.copy()
-    pivots: list = []
-    inverses: list = []
-    for j in range(n):
-        pivot = D[j, j] - sum(L[j, k] * L[j, k] * pivots[k] for k in range(j))
-        pivots.append(pivot)
-        inverses.append(_inverse(pivot))
-        for i in range(j + 1, n):
-            entry = D[i, j] - sum(L[i, k] * L[j, k] * pivots[k] for k in range(j))
-            L[i, j] = entry * inverses[j]
-            x[i] = x[i] - L[i, j] * x[j]
-    for i in range(n - 1, -1, -1):
-        x[i] = x[i] * inverses[i] - sum(L[k, i] * x[k] for k in range(i + 1, n))
-    return x, tuple(pivots)
-
-
-def _inverse(pivot):
-    # A pivot that is zero whatever the state makes the result meaningless: see `positive`.
-    return 0.0 if not isinstance(pivot, Symbol) and pivot <= 0.0 else 1.0 / pivot

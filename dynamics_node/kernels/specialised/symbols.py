@@ -208,7 +208,7 @@ class Symbol:
         return self.program.record('divide', self, other)
 
     def __rtruediv__(self, other):
-        return self.program.record('divide', float(other), self)
+        return 0.0 if other == 0 else self.program.record('divide', float(other), self)
 
     def __neg__(self):
         if self._negated is not None:
