@@ -2,6 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 import math
+import operator
 import os
 
 import numpy as np
@@ -59,6 +60,9 @@ class Evaluation:
         self._joint_names = joint_names
         self._n = len(joint_names)
         self._shapes = {name: shapes(self._n) for name, shapes in SHAPES.items()}
+
+    def __reduce__(self):
+        return type(self), (self.packed, self._joint_names, self.specialisation)
 
     def states(self, **values):
         """
@@ -153,7 +157,7 @@ class Evaluation:
         if out is None:
             outputs = [np.empty((count, *shape)) for shape in shapes]
         else:
-            _check_out(out, [(*lead, *shape) for shape in shapes])
+            _check_out(out, [(*lead, *shape) for shape in shapes], arrays)
             outputs = [array.reshape(count, *shape)
                        for array, shape in zip(out, shapes, strict=True)]
         code = self.specialisation.code
@@ -186,6 +190,8 @@ _KERNELS = {'dynamics': closed_form.dynamics, 'mass_matrix': closed_form.mass_ma
 def _in_pieces(compute, arrays, outputs, count, threads):
     # compute(rows of the arrays, rows of the outputs) in pieces of about equal size.
     pieces = math.ceil(count / _PIECE)
+    if threads is not None:
+        threads = _checked_threads(threads)
     if pieces <= 1:
         compute(arrays, outputs)
         return
@@ -196,7 +202,7 @@ def _in_pieces(compute, arrays, outputs, count, threads):
         rows = slice(count * i // pieces, count * (i + 1) // pieces)
         compute([array[rows] for array in arrays], [output[rows] for output in outputs])
 
-    if threads <= 1:
+    if threads == 1:
         for i in range(pieces):
             piece(i)
     else:
@@ -205,20 +211,35 @@ def _in_pieces(compute, arrays, outputs, count, threads):
             list(pool.map(piece, range(pieces)))
 
 
+def _checked_threads(threads):
+    try:
+        threads = operator.index(threads)
+    except TypeError:
+        threads = 0
+    if threads < 1:
+        raise ArgumentError('threads: expected an integer of at least 1, or None for as many as '
+                            'this process may use')
+    return threads
+
+
 def _one(out):
     return None if out is None else (out,)
 
 
-def _check_out(arrays, shapes):
+def _check_out(arrays, shapes, inputs):
     if len(arrays) != len(shapes):
         raise ArgumentError(f'out: expected {len(shapes)} arrays, got {len(arrays)}')
     for array in arrays:
-        if not (type(array) is np.ndarray and array.dtype is _FLOAT and array.flags.carray):
+        if not (type(array) is np.ndarray and array.dtype == _FLOAT and array.flags.carray):
             raise ArgumentError('out: expected writeable, contiguous float64 arrays, got '
                                 f'{type(array).__name__}; take what an earlier call has returned')
     if [array.shape for array in arrays] != shapes:
         raise ArgumentError(f'out: expected shapes {shapes}, '
                             f'got {[array.shape for array in arrays]}')
+    for i, array in enumerate(arrays):
+        if any(np.may_share_memory(array, other) for other in (*inputs, *arrays[:i])):
+            raise ArgumentError('out: expected arrays of their own, got memory that an argument '
+                                'or another one of them uses too')
 
 
 def _plain(value):

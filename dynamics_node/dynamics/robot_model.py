@@ -1,5 +1,7 @@
 """`RobotModel`: the dynamics of one robot, for one state or many."""
 
+import inspect
+
 import numpy as np
 
 from .evaluation import Evaluation, SHAPES
@@ -18,13 +20,13 @@ class RobotModel:
     """
     A robot with a fixed base: D(q) q̈ + C(q, q̇) q̇ + G(q) = τ.
 
-    Frozen: another gravity makes another model. Every method takes arrays with leading batch
-    axes and may be called from several threads. NaN in an argument gives NaN in all that depends
-    on it.
+    What it describes never changes: another gravity makes another model. Every method takes
+    arrays with leading batch axes and may be called from several threads. NaN in an argument
+    gives NaN in all that depends on it.
 
     Large batches are computed by as many threads as the process may use, or by `threads`.
 
-    A robot that is used often gets machine code of its own, compiled in the background and kept
+    A robot that is used often gets machine code of its own, compiled by another process and kept
     on disk; until it is ready, and for large robots, a general kernel answers. The two agree to
     rounding. See `specialise`.
 
@@ -85,9 +87,14 @@ class RobotModel:
         """
         return cls(build_tree(read_urdf(source)), gravity)
 
-    def __reduce__(self):
-        # Machine code stays where it is.
-        return type(self), (self._tree, self._gravity)
+    def __getstate__(self):
+        # Machine code stays where it is: its addresses mean nothing in another process.
+        return {name: value for name, value in vars(self).items()
+                if not inspect.isbuiltin(value)}
+
+    def __setstate__(self, state):
+        vars(self).update(state)
+        self._evaluation.specialisation.attach(self)
 
     def __repr__(self):
         return (f'RobotModel({self._n} joints, {self.total_mass:.6g} kg moving, '
@@ -172,13 +179,14 @@ class RobotModel:
         ----------
         wait : bool
             True: return when it is in use, after some seconds if it was never compiled on this
-            machine. False: return at once.
+            machine. False: return at once, and have another process compile it.
 
         Returns
         -------
         bool
-            Whether it is in use. It never is for robots with very many joints (about 20 in one
-            chain), on Pythons other than CPython, and with DYNAMICS_NODE_SPECIALISE=0.
+            Whether it is in use. It never is for robots with very many joints (more than about
+            16 in one chain), on Pythons other than CPython 3.11 and later, and with
+            DYNAMICS_NODE_SPECIALISE=0.
 
         """
         specialisation = self._evaluation.specialisation
@@ -191,7 +199,8 @@ class RobotModel:
         # Machine code takes the place of methods. What it does not take, it hands to the
         # evaluation, not to the method: a function that refers to its model would never be freed.
         for name, shapes in SHAPES.items():
-            if getattr(type(self), name) is getattr(RobotModel, name):
+            # A method of a subclass, or that somebody has put in its place, stays.
+            if getattr(type(self), name) is getattr(RobotModel, name) and name not in vars(self):
                 fallback = getattr(self._evaluation, name)
                 setattr(self, name, make_callable(
                     code.loaded, name, shapes(self._n), fallback,
@@ -210,7 +219,7 @@ class RobotModel:
             Where to put the answer: what an earlier call of this shape has returned. Large
             arrays take longer to make than to fill.
         threads : int, optional
-            At most so many for a large batch.
+            At most so many for a large batch; at least 1.
 
         Returns
         -------
@@ -238,7 +247,7 @@ class RobotModel:
         q, qd : array_like, shape (..., n)
             Joint positions (rad or m) and velocities; their batch axes broadcast.
         threads : int, optional
-            At most so many for a large batch.
+            At most so many for a large batch; at least 1.
 
         Returns
         -------
@@ -269,7 +278,7 @@ class RobotModel:
             Where to put the answer: what an earlier call of this shape has returned. Large
             arrays take longer to make than to fill.
         threads : int, optional
-            At most so many for a large batch.
+            At most so many for a large batch; at least 1.
 
         Returns
         -------
@@ -352,7 +361,7 @@ class RobotModel:
             Where to put the answer: what an earlier call of this shape has returned. Large
             arrays take longer to make than to fill.
         threads : int, optional
-            At most so many for a large batch.
+            At most so many for a large batch; at least 1.
 
         Returns
         -------
@@ -383,7 +392,7 @@ class RobotModel:
             Where to put the answer: what an earlier call of this shape has returned. Large
             arrays take longer to make than to fill.
         threads : int, optional
-            At most so many for a large batch.
+            At most so many for a large batch; at least 1.
 
         Returns
         -------
@@ -413,7 +422,7 @@ class RobotModel:
         tau : array_like, shape (..., n)
             Joint efforts, N m or N; batch axes broadcast.
         threads : int, optional
-            At most so many for a large batch.
+            At most so many for a large batch; at least 1.
 
         Returns
         -------
@@ -425,11 +434,12 @@ class RobotModel:
         ArgumentError
             If a last axis is not n or batch axes do not fit.
         SingularMassMatrixError
-            If D is not positive definite: a joint moves nothing that has inertia.
+            If D is not positive definite beyond rounding: a joint moves nothing that has
+            inertia.
 
         References
         ----------
-        docs/mathematics.md, equation (1), solved by a Cholesky factorisation of D.
+        docs/mathematics.md, equation (25).
 
         """
         return self._evaluation.forward_dynamics(q, qd, tau, threads=threads)

@@ -1,19 +1,27 @@
 """The machine code of one robot, shared by all its models: fetched, made, handed out."""
 
+import logging
 import threading
 import weakref
 
 from ..kernels import specialised
 
-# So many states are computed by the general kernel before it looks worth while to compile.
+# So many calls to the general kernel make it look worth while to compile; a batch counts as one
+# call per so many states.
 _WORTH_WHILE = 200
+_STATES_PER_CALL = 100
+# Whether the background is ready is asked at every so many calls.
+_ASK_EVERY = 50
+
+_log = logging.getLogger(__name__)
 
 
 class Specialisation:
     """
     Machine code for one robot, or the way to it.
 
-    It does not depend on gravity, so models of the robot under several gravities share it.
+    It does not depend on gravity, so models of the robot under several gravities share it. It is
+    a matter of speed only: whatever fails here is logged, and the general kernel goes on.
 
     Attributes
     ----------
@@ -36,12 +44,15 @@ class Specialisation:
         self._packed = structure, numbers
         self._models: weakref.WeakSet = weakref.WeakSet()
         self._lock = threading.Lock()
-        self._states = 0
-        self._thread = None
+        self._calls = 0
+        self._process = None
         self._wanted = (len(structure) > 0 and specialised.is_wanted()
                         and specialised.is_supported())
         if self._wanted:
-            self.code = specialised.from_disk(structure, numbers)
+            self._take()
+
+    def __reduce__(self):
+        return type(self), self._packed
 
     def attach(self, model):
         """
@@ -56,32 +67,62 @@ class Specialisation:
         with self._lock:
             self._models.add(model)
         if self.code is not None:
-            model._use(self.code)
+            self._hand_out([model])
 
     def count(self, states):
-        """Notice that the general kernel has computed so many states; begin if it is often."""
-        self._states += states
-        if self._states >= _WORTH_WHILE and self._wanted and self._thread is None:
-            self.begin()
+        """Notice that the general kernel was asked for so many states; begin if it is often."""
+        self._calls += max(1, states // _STATES_PER_CALL)
+        if not self._wanted or self._calls < _WORTH_WHILE:
+            return
+        self._calls -= _ASK_EVERY
+        self.begin()
 
     def begin(self):
-        """Make the code in the background, unless it is there, being made or not wanted."""
-        with self._lock:
-            if self._wanted and self.code is None and self._thread is None:
-                self._thread = specialised.make_in_background(*self._packed, self._ready)
+        """Have the code made in the background, or fetch it if that is done."""
+        if not self._wanted or self.code is not None:
+            return
+        try:
+            if self._process is None:
+                self._process = specialised.start(*self._packed)
+            elif self._process.poll() is not None:
+                self._wanted = self._process.returncode == 0
+                if self._wanted:
+                    # Loading takes some milliseconds: not in somebody's control loop.
+                    threading.Thread(target=self._take, name='dynamics_node load').start()
+        except (OSError, RuntimeError) as error:  # no process or thread can be started
+            self._give_up(error)
 
     def wait(self):
-        """Make the code and wait for it; return whether there is one."""
-        self.begin()
-        if self._thread is not None:
-            self._thread.join()
+        """Make the code here, or wait for the background; return whether there is one."""
+        if self._wanted and self.code is None:
+            if self._process is not None:
+                self._process.wait()
+            self._take(make=True)
         return self.code is not None
 
-    def _ready(self, code):
-        # In the background thread.
+    def _take(self, make=False):
+        # Once: a thread that loads and a caller that waits may both come here.
         with self._lock:
-            self.code = code
+            if self.code is not None:
+                return
+            try:
+                self.code = (specialised.make if make else specialised.from_disk)(*self._packed)
+            except Exception as error:
+                self._give_up(error)
+            # Asked for, and not there: too large a robot, or a place that cannot be written.
+            self._wanted = self.code is not None or (self._wanted and self._process is None)
             models = list(self._models)
-        if code is not None:
-            for model in models:
-                model._use(code)
+        if self.code is not None:
+            self._hand_out(models)
+
+    def _hand_out(self, models):
+        for model in models:
+            try:
+                model._use(self.code)
+            except Exception as error:
+                self._give_up(error)
+
+    def _give_up(self, error):
+        self._wanted = False
+        _log.warning('no machine code for this robot, the general kernel goes on: %s: %s',
+                     type(error).__name__, error)

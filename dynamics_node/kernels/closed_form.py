@@ -26,23 +26,26 @@ All of it is one file, because numba's cache on disk does not notice a change in
 import numpy as np
 
 from .jit import compiled, formula
-from .packing import (
-    AXIS,
-    COORDINATE,
-    INERTIA,
-    KIND,
-    MULTIPLIER,
-    OFFSET,
-    PARENT,
-    ROTATION,
-    TRANSLATION,
-)
+
+# Columns of `structure`, one row per body: see `packing`.
+PARENT, KIND, COORDINATE = range(3)
+
+# Columns of `numbers`, one row per body. ROTATION is row-major; INERTIA holds the ten numbers
+# of J: mass, first moments (3), second moments xx, xy, xz, yy, yz, zz.
+ROTATION = 0
+TRANSLATION = 9
+AXIS = 12
+INERTIA = 15
+MULTIPLIER = 25
+OFFSET = 26
+WIDTH = 27
 
 # Columns of the arrays above.
 OF_ROTATION, OF_ORIGIN, OF_OFFSET = 0, 9, 12
 POSE, TWIST, COMPOSITE, MOMENTUM = 15, 6, 10, 12
 
 _PRISMATIC = 1
+_EPSILON = 2.0**-52
 
 
 # For every robot, B states at once ---------------------------------------------------------
@@ -148,17 +151,17 @@ def forward_dynamics(structure, numbers, q, qd, tau, qdd, sound):
     qdd : numpy.ndarray, shape (B, n)
         Overwritten.
     sound : numpy.ndarray of bool, shape (B,)
-        Overwritten: False where D is not positive definite, so qdd means nothing.
+        Overwritten: False where D is not positive definite beyond rounding, so qdd means nothing.
 
     """
     work, n = workspace(structure.shape[0]), q.shape[1]
-    D, pivots, rest = np.empty((n, n)), np.empty(n), np.zeros(n)
+    D, pivots, margins, rest = np.empty((n, n)), np.empty(n), np.empty(n), np.zeros(n)
     for b in range(q.shape[0]):
         D[:], qdd[b] = 0.0, 0.0
         forward_dynamics_of_state(structure, numbers, q[b], qd[b], tau[b], rest, work, D, pivots,
-                                  qdd[b])
+                                  margins, qdd[b])
         # Written so that NaN passes, and comes out as NaN.
-        sound[b] = not (pivots <= 0.0).any()
+        sound[b] = not (margins <= 0.0).any()
 
 
 # One state ---------------------------------------------------------------------------------
@@ -214,17 +217,18 @@ def inverse_dynamics_of_state(structure, numbers, q, qd, qdd, work, tau):
 
 
 @formula
-def forward_dynamics_of_state(structure, numbers, q, qd, tau, rest, work, D, pivots, qdd):
-    """Solve D qdd = tau - (C qd + G), equation (1); D and qdd are zeros before, `rest` is."""
+def forward_dynamics_of_state(structure, numbers, q, qd, tau, rest, work, D, pivots, margins,
+                              qdd):
+    """Solve equation (25); `rest` are zeros, D and qdd are before."""
     inverse_dynamics_of_state(structure, numbers, q, qd, rest, work, qdd)
     for i in range(qdd.shape[0]):
         qdd[i] = tau[i] - qdd[i]
     mass_matrix_of_state(structure, numbers, q, work, D)
-    solve_positive_definite(D, qdd, pivots)
+    solve_positive_definite(D, qdd, pivots, margins)
 
 
 @formula
-def solve_positive_definite(D, x, pivots):
+def solve_positive_definite(D, x, pivots, margins):
     """
     Solve D x = b in place by Cholesky without square roots, D = L diag(pivots) Lᵀ.
 
@@ -234,15 +238,18 @@ def solve_positive_definite(D, x, pivots):
         L below the diagonal afterwards.
     x : numpy.ndarray, shape (n,)
         b before.
-    pivots : numpy.ndarray, shape (n,)
-        Overwritten: all positive if D is positive definite.
+    pivots, margins : numpy.ndarray, shape (n,)
+        Overwritten. The margins are what is left of the pivots beyond rounding: all positive if
+        D is positive definite.
 
     """
     n = x.shape[0]
     for j in range(n):
         pivots[j] = D[j, j]
+        margins[j] = -n * _EPSILON * D[j, j]
         for k in range(j):
             pivots[j] = pivots[j] - D[j, k] * D[j, k] * pivots[k]
+        margins[j] = pivots[j] + margins[j]
         inverse = 1.0 / pivots[j]
         for i in range(j + 1, n):
             for k in range(j):

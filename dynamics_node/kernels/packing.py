@@ -2,18 +2,18 @@
 
 import numpy as np
 
-# Columns of `structure`, one row per body.
-PARENT, KIND, COORDINATE = range(3)
-
-# Columns of `numbers`, one row per body. ROTATION is row-major; INERTIA holds the ten numbers
-# of J: mass, first moments (3), second moments xx, xy, xz, yy, yz, zz.
-ROTATION = 0
-TRANSLATION = 9
-AXIS = 12
-INERTIA = 15
-MULTIPLIER = 25
-OFFSET = 26
-WIDTH = 27
+from .closed_form import (
+    AXIS,
+    COORDINATE,
+    INERTIA,
+    KIND,
+    MULTIPLIER,
+    OFFSET,
+    PARENT,
+    ROTATION,
+    TRANSLATION,
+    WIDTH,
+)
 
 
 def pack(tree, gravity):

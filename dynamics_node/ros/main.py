@@ -50,8 +50,6 @@ def main(args=None):
             _spin(node, signals, options)
     finally:
         rclpy.try_shutdown()
-        from ..kernels.specialised import abandon
-        abandon()
     return 0
 
 

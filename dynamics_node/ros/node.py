@@ -109,7 +109,7 @@ class DynamicsNode(Node):
             kept = 'the one before stays in force' if self._robot else 'still waiting for one'
             self.logger.error(f'robot description from {origin} refused, {kept}: {error}')
             return True
-        # In a thread of its own; the general kernel, loaded at the start, answers meanwhile.
+        # In another process; the general kernel, loaded at the start, answers meanwhile.
         model.specialise(wait=False)
         is_first = self._robot is None
         self._robot = robot

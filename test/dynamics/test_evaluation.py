@@ -1,6 +1,6 @@
 """Batches: pieces, threads, answers put where one wants them."""
 
-from dynamics_node import ArgumentError, RobotModel
+from dynamics_node import ArgumentError, RobotModel, SingularMassMatrixError
 from dynamics_node.dynamics import evaluation
 import numpy as np
 import pytest
@@ -80,6 +80,47 @@ def test_arrays_for_the_answer_must_fit(model, wrong):
     q = states(model, 5)[0]
     with pytest.raises(ArgumentError, match='out: expected'):
         model.gravity_torque(q, out=wrong)
+
+
+def test_arrays_for_the_answer_share_no_memory_with_others(model):
+    q, qd, qdd = states(model, 8)
+    for method, arguments, out in (
+            (model.gravity_torque, (q,), q), (model.gravity_torque, (q[0],), q[0]),
+            (model.gravity_torque, (q[1:5],), q[0:4]),
+            (model.inverse_dynamics, (q, qd, qdd), qdd)):
+        with pytest.raises(ArgumentError, match='out: expected arrays of their own'):
+            method(*arguments, out=out)
+    D, _, G = model.dynamics(q, qd)
+    with pytest.raises(ArgumentError, match='out: expected arrays of their own'):
+        model.dynamics(q, qd, out=(D, D, G))
+
+
+@pytest.mark.parametrize('threads', [0, -1, 1.5, '2', [2], float('nan')])
+@pytest.mark.parametrize('count', [1, 100])
+def test_threads_are_a_number_of_at_least_one(model, threads, count):
+    with pytest.raises(ArgumentError, match='threads: expected an integer of at least 1'):
+        model.gravity_torque(states(model, count)[0], threads=threads)
+
+
+def test_a_singular_mass_matrix_is_refused_one_by_one_and_in_batches():
+    # Two joints about one axis with nothing between them: only their sum moves inertia.
+    text = random_urdf(5, joints=1, with_mimic=False, prismatic=0.0).replace('</robot>', """
+        <link name="between"/><link name="end"><inertial><mass value="1.3"/>
+        <origin xyz="0.2 0.1 0"/><inertia ixx="0.01" iyy="0.02" izz="0.025" ixy="0" ixz="0"
+        iyz="0"/></inertial></link>
+        <joint name="a" type="continuous"><parent link="link0"/><child link="between"/>
+        <axis xyz="0.6 0 0.8"/></joint><joint name="b" type="continuous">
+        <parent link="between"/><child link="end"/><axis xyz="0.6 0 0.8"/></joint></robot>""")
+    model = RobotModel.from_urdf(text)
+    rng = np.random.default_rng(1)
+    for _ in range(2):
+        for _ in range(50):
+            q, qd, tau = rng.uniform(-2, 2, (3, 3))
+            with pytest.raises(SingularMassMatrixError):
+                model.forward_dynamics(q, qd, tau)
+            with pytest.raises(SingularMassMatrixError):
+                model.forward_dynamics(q[None], qd[None], tau[None])
+        assert model.specialise()
 
 
 def test_batch_axes_of_any_number(model):

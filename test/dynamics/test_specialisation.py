@@ -1,5 +1,6 @@
 """Machine code takes over without anybody waiting, and can be done without."""
 
+import copy
 import inspect
 import os
 import pickle
@@ -8,6 +9,9 @@ import sys
 import time
 
 from dynamics_node import RobotModel
+from dynamics_node.dynamics.specialisation import Specialisation
+from dynamics_node.kernels import specialised
+from dynamics_node.kernels.specialised import background, robot_code
 import numpy as np
 import pytest
 from support.robots import PENDULUM, random_urdf
@@ -16,6 +20,8 @@ from support.robots import PENDULUM, random_urdf
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(tmp_path))
+    monkeypatch.setattr(robot_code, '_loaded', {})
+    monkeypatch.setattr(background, '_processes', {})
     return tmp_path
 
 
@@ -33,7 +39,7 @@ def test_a_model_that_is_used_often_gets_machine_code_by_itself():
 def test_a_model_that_is_used_once_does_not():
     model = RobotModel.from_urdf(PENDULUM)
     model.gravity_torque([0.3])
-    assert model._evaluation.specialisation._thread is None
+    assert model._evaluation.specialisation._process is None
 
 
 def test_the_next_model_of_the_robot_has_it_at_once():
@@ -77,13 +83,80 @@ def test_a_robot_with_very_many_joints_goes_on_with_the_general_kernel():
     assert model.gravity_torque(np.zeros(60)).shape == (60,)
 
 
-def test_a_model_can_be_pickled():
+@pytest.mark.parametrize('duplicate', [
+    copy.copy, copy.deepcopy, lambda item: pickle.loads(pickle.dumps(item))])
+def test_a_model_and_its_methods_can_be_copied_and_pickled(duplicate):
     model = RobotModel.from_urdf(PENDULUM)
-    model.specialise()
-    copy = pickle.loads(pickle.dumps(model))
-    assert copy.is_specialised
-    np.testing.assert_array_equal(copy.gravity_torque(np.array([0.3])),
-                                  model.gravity_torque(np.array([0.3])))
+    model.note = 'mine'
+    q = np.array([0.3])
+    for _ in range(2):
+        other = duplicate(model)
+        assert other.note == 'mine'
+        assert other.is_specialised == model.is_specialised
+        np.testing.assert_array_equal(other.gravity_torque(q), model.gravity_torque(q))
+        method = duplicate(model.gravity_torque)
+        np.testing.assert_allclose(method(q), model.gravity_torque(q), rtol=1e-14)
+        assert model.specialise()
+
+
+def test_what_somebody_put_in_the_place_of_a_method_stays():
+    model = RobotModel.from_urdf(PENDULUM)
+    model.gravity_torque = lambda q: np.zeros(1)
+    assert model.specialise()
+    np.testing.assert_array_equal(model.gravity_torque(np.array([0.3])), [0.0])
+
+
+@pytest.mark.parametrize('step', ['from_disk', 'make', 'start'])
+def test_whatever_fails_the_general_kernel_goes_on(step, monkeypatch, caplog):
+    def fail(*arguments):
+        raise OSError('as it happens')
+
+    monkeypatch.setattr(specialised, step, fail)
+    model = RobotModel.from_urdf(PENDULUM)
+    assert not model.specialise(wait=step != 'start')
+    assert np.isfinite(model.gravity_torque([0.3])).all()
+    assert 'the general kernel goes on: OSError: as it happens' in caplog.text
+
+
+def test_a_failing_hand_out_does_not_reach_the_caller(caplog):
+    class Refusing:
+        def _use(self, code):
+            raise AttributeError('no')
+
+    model, refusing = RobotModel.from_urdf(PENDULUM), Refusing()
+    assert model.specialise()
+    specialisation = Specialisation(*model._evaluation.packed)
+    specialisation.attach(refusing)
+    assert 'the general kernel goes on: AttributeError' in caplog.text
+
+
+def test_a_controller_may_use_its_model_to_the_end():
+    # The finalizers of garbage run in any order: the machine code must outlive them all.
+    script = f"""
+import gc
+import numpy as np
+from dynamics_node import RobotModel
+
+class Arm:
+    def __init__(self, model):
+        self.model, self.callback = model, self.hold
+    def hold(self):
+        return self.model.gravity_torque(np.array([0.3]))
+    def __del__(self):
+        self.hold()
+
+for _ in range(30):
+    model = RobotModel.from_urdf({str(PENDULUM)!r})
+    assert model.specialise()
+    Arm(model)
+    del model
+    gc.collect()
+last = Arm(RobotModel.from_urdf({str(PENDULUM)!r}))
+"""
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+    run = subprocess.run([sys.executable, '-c', script], env=environment, capture_output=True,
+                         text=True, timeout=120)
+    assert (run.returncode, run.stderr) == (0, '')
 
 
 def test_a_method_of_a_subclass_stays():
@@ -101,7 +174,11 @@ def test_python_may_end_while_it_is_made(folder):
     script = (f'from dynamics_node import RobotModel\n'
               f'RobotModel.from_urdf({str(PENDULUM)!r}).specialise(wait=False)\n')
     environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
-    run = subprocess.run([sys.executable, '-c', script], env=environment, capture_output=True,
-                         text=True, timeout=120)
+    run = subprocess.run([sys.executable, '-W', 'always', '-c', script], env=environment,
+                         capture_output=True, text=True, timeout=120)
     assert (run.returncode, run.stderr) == (0, '')
-    assert len(list(folder.iterdir())) == 1
+    # The other process finishes what it has begun.
+    end = time.monotonic() + 60
+    while not list(folder.iterdir()) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert list(folder.iterdir())

@@ -4,24 +4,17 @@ Machine code for one robot: the closed form without loops, zeros and questions.
 A robot's tree is known before its state, so the formulas of `closed_form` are run once on symbols
 (`symbols`, `quantities`), written down as LLVM code for one state and for several states side by
 side (`code`, `sine`, `functions`), given an entry from Python (`call`), compiled (`machine`), and
-kept on disk (`store`). `robot_code` puts it together.
+kept on disk (`store`). `robot_code` puts it together, `background` does so in another process.
 
-Nobody waits for it: the general kernel answers until it is ready.
+Nobody has to wait for it: the general kernel answers until it is ready.
 
 What may change here: how the formulas become machine code, never the formulas.
 
 """
 
+from .background import start
 from .call import is_supported, make_callable
-from .robot_code import (
-           abandon,
-           are_ordinary,
-           from_disk,
-           is_wanted,
-           make,
-           make_in_background,
-           RobotCode,
-)
+from .robot_code import are_ordinary, from_disk, is_wanted, make, RobotCode
 
-__all__ = ['RobotCode', 'abandon', 'are_ordinary', 'from_disk', 'is_supported', 'is_wanted',
-           'make', 'make_callable', 'make_in_background']
+__all__ = ['RobotCode', 'are_ordinary', 'from_disk', 'is_supported', 'is_wanted', 'make',
+           'make_callable', 'start']

@@ -10,7 +10,8 @@ knows how to convert and what to say.
 
 Making the arrays of an answer takes as long as computing a small arm. So each entry keeps a few
 answers, and gives one out again when nobody holds it, or any array of it, any more: Python's own
-reference counts say so, and what is held is never touched.
+reference counts say so, and what is held is never touched. (So a finalizer of an answer, set by
+`weakref.finalize`, may have to wait for the end of the model.)
 
 The entry reads the arguments as numpy and CPython lay them out in memory (`PyArrayObject` and
 `PyMethodDef`, both public and unchanged for many years). `is_supported` looks whether it is so.
@@ -22,6 +23,7 @@ import functools
 import inspect
 import sys
 import sysconfig
+import weakref
 
 import numpy as np
 
@@ -252,9 +254,27 @@ class _Context(np.ndarray):
     # What an entry finds behind `self`. `owned` keeps alive what the slots point to.
 
     owned: tuple
+    evaluation: object
 
     def __new__(cls, values):
-        return np.array(values, dtype=np.int64).view(cls)
+        context = np.array(values, dtype=np.int64).view(cls)
+        context.flags.writeable = False
+        return context
+
+    def __reduce__(self):
+        # A builtin function is pickled as what it belongs to and its name. In another process
+        # these addresses mean nothing: the fallback's owner has a method of the same name.
+        return _itself, (self.evaluation,)
+
+
+def _itself(item):
+    return item
+
+
+# Functions of Python's own library, in a table that nobody else sets argument types in.
+_API = ctypes.PyDLL(None)
+_SYMBOLS = ('PyType_GenericAlloc', 'PyTuple_SetItem', 'Py_DecRef', 'PyObject_Vectorcall',
+            'PyCFunction_NewEx', 'PyCapsule_GetPointer')
 
 
 def make_callable(code, name, shapes, fallback, documentation, terms_type, gravity):
@@ -268,10 +288,10 @@ def make_callable(code, name, shapes, fallback, documentation, terms_type, gravi
     name : str
     shapes : sequence of tuple of int
         Of the outputs.
-    fallback : callable
+    fallback : method
         Takes over what the entry does not take. It must not refer to the new function: Python
         would not find that circle.
-    documentation : str
+    documentation : str or None
         Docstring.
     terms_type : type
         A named tuple for the answers of more than one output.
@@ -283,24 +303,24 @@ def make_callable(code, name, shapes, fallback, documentation, terms_type, gravi
     builtin_function_or_method
 
     """
-    api = ctypes.pythonapi
     addresses = {
         'fallback': id(fallback), 'array_type': id(np.ndarray),
         'float64': id(np.dtype(np.float64)), 'terms_type': id(terms_type),
         'new_array': _numpy_function(_PYARRAY_NEW),
-        'new_object': _address(api.PyType_GenericAlloc),
-        'set_item': _address(api.PyTuple_SetItem), 'release': _address(api.Py_DecRef),
-        'call': _address(api.PyObject_Vectorcall)}
+        'new_object': _address(_API.PyType_GenericAlloc),
+        'set_item': _address(_API.PyTuple_SetItem), 'release': _address(_API.Py_DecRef),
+        'call': _address(_API.PyObject_Vectorcall)}
     bits = np.array(gravity, dtype=np.float64).view(np.int64)
     answers = [_answer(shapes, terms_type) for _ in range(_ANSWERS)]
     kept = [id(item) for answer in answers for item in
             ([answer, *answer] if len(shapes) > 1 else [answer, answer])]
     context = _Context([*(addresses[slot] for slot in _SLOTS), *bits.tolist(), *kept])
-    text = f'{name}{inspect.signature(fallback)}\n--\n\n{inspect.cleandoc(documentation)}'
+    text = f'{name}{inspect.signature(fallback)}\n--\n\n{inspect.cleandoc(documentation or "")}'
     method = _MethodDefinition(name.encode(), code.address(f'{name}_call'), _METHOD_FLAGS,
                                text.encode())
     context.owned = (code, method, fallback, terms_type, answers)
-    new = api.PyCFunction_NewEx
+    context.evaluation = fallback.__self__
+    new = _API.PyCFunction_NewEx
     new.argtypes = [ctypes.POINTER(_MethodDefinition), ctypes.py_object, ctypes.py_object]
     new.restype = ctypes.py_object
     return new(ctypes.byref(method), context, 'dynamics_node')
@@ -317,7 +337,7 @@ def _address(function):
 
 def _numpy_function(place):
     core = getattr(np, '_core', None) or np.core
-    pointer = ctypes.pythonapi.PyCapsule_GetPointer
+    pointer = _API.PyCapsule_GetPointer
     pointer.argtypes, pointer.restype = [ctypes.py_object, ctypes.c_char_p], ctypes.c_void_p
     table = pointer(core._multiarray_umath._ARRAY_API, None)
     return ctypes.c_void_p.from_address(table + 8 * place).value
@@ -326,26 +346,31 @@ def _numpy_function(place):
 @functools.cache
 def is_supported():
     """
-    Look whether objects lie in memory as the entries expect.
+    Look whether objects lie in memory as the entries expect, and Python has what they call.
 
     Returns
     -------
     bool
-        False on another Python than CPython, one without its global lock, or a 32-bit one.
+        False on another Python than CPython, before 3.11, without the global lock, or of 32 bits.
 
     """
     if (sys.implementation.name != 'cpython' or ctypes.sizeof(ctypes.c_void_p) != 8
-            or sysconfig.get_config_var('Py_GIL_DISABLED')):
+            or sysconfig.get_config_var('Py_GIL_DISABLED')
+            or not all(hasattr(_API, symbol) for symbol in _SYMBOLS)):
         return False
     probe = np.arange(3.0)
     at = id(probe)
     address = functools.partial(_read, ctypes.c_void_p, at)
-    return (address(_TYPE) == id(np.ndarray) and address(_DATA) == probe.ctypes.data
-            and _read(ctypes.c_int, at, _DIMENSION_COUNT) == 1
-            and _read(ctypes.c_int64, address(_DIMENSIONS), 0) == 3
-            and address(_DESCRIPTION) == id(np.dtype(np.float64))
-            and _read(ctypes.c_int, at, _FLAGS) & _CONTIGUOUS_AND_ALIGNED
-            == _CONTIGUOUS_AND_ALIGNED)
+    laid_out = (
+        address(_TYPE) == id(np.ndarray) and address(_DATA) == probe.ctypes.data
+        and _read(ctypes.c_int64, at, _REFERENCES) == sys.getrefcount(probe) - 1
+        and _read(ctypes.c_int, at, _DIMENSION_COUNT) == 1
+        and _read(ctypes.c_int64, address(_DIMENSIONS), 0) == 3
+        and address(_DESCRIPTION) == id(np.dtype(np.float64))
+        and _read(ctypes.c_int, at, _FLAGS) & _OWN_PLAIN == _OWN_PLAIN
+        and address(_WEAK) is None)
+    watcher = weakref.ref(probe)
+    return laid_out and address(_WEAK) == id(watcher)
 
 
 def _read(kind, at, offset):

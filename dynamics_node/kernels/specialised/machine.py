@@ -67,9 +67,15 @@ def compile_code(text):
 
 
 class LoadedCode:
-    """Machine code in memory; it stays there as long as this object."""
+    """
+    Machine code in memory, where it stays.
 
-    def __init__(self, object_files):
+    It is never freed: when garbage is collected, the finalizers of those who still call it may
+    run after its own.
+
+    """
+
+    def __init__(self, object_files, names):
         """
         Load object files.
 
@@ -77,18 +83,25 @@ class LoadedCode:
         ----------
         object_files : sequence of bytes
             As `compile_code` returns them.
+        names : iterable of str
+            Of the functions that are wanted.
 
         Raises
         ------
         RuntimeError
-            If LLVM cannot load it.
+            If LLVM cannot load them, or a function is not there.
 
         """
-        self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(''), _target())
+        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(''), _target())
         for object_file in object_files:
-            self._engine.add_object_file(llvm.ObjectFileRef.from_data(object_file))
-        self._engine.finalize_object()
+            engine.add_object_file(llvm.ObjectFileRef.from_data(object_file))
+        engine.finalize_object()
+        self._addresses = {name: engine.get_function_address(name) for name in names}
+        engine.detach()
+        missing = [name for name, address in self._addresses.items() if not address]
+        if missing:
+            raise RuntimeError(f'expected machine code of {", ".join(missing)}, got none')
 
     def address(self, name):
-        """Return the address of a function, 0 if there is none."""
-        return self._engine.get_function_address(name)
+        """Return the address of a function."""
+        return self._addresses[name]

@@ -119,15 +119,17 @@ def forward_dynamics(structure, numbers):
     """Record the accelerations that efforts cause, D q̈ = τ - (C q̇ + G)."""
     robot = _Robot(structure, numbers)
     q, qd, tau = robot.inputs('q'), robot.inputs('qd'), robot.inputs('tau')
-    D, qdd, pivots = robot.zeros(robot.n, robot.n), robot.zeros(robot.n), robot.zeros(robot.n)
+    D, qdd = robot.zeros(robot.n, robot.n), robot.zeros(robot.n)
+    pivots, margins = robot.zeros(robot.n), robot.zeros(robot.n)
     try:
         closed_form.forward_dynamics_of_state(structure, robot.numbers, q, qd, tau,
-                                              robot.zeros(robot.n), robot.work, D, pivots, qdd)
+                                              robot.zeros(robot.n), robot.work, D, pivots, margins,
+                                              qdd)
     except ZeroDivisionError:
         # A pivot is zero whatever the state: `positive` says that the result means nothing.
-        qdd, pivots = robot.zeros(robot.n), robot.zeros(1)
+        qdd, margins = robot.zeros(robot.n), robot.zeros(1)
     return Quantity('forward_dynamics', robot.n, ('q', 'qd', 'tau'), robot.program, (qdd,),
-                    tuple(pivots))
+                    tuple(margins))
 
 
 ALL = (gravity_torque, dynamics, inverse_dynamics, mass_matrix, forward_dynamics,

@@ -1,9 +1,8 @@
-"""Machine code for one robot: made in the background, kept on disk, checked before it is used."""
+"""Machine code for one robot: compiled, kept on disk, compared before it is used."""
 
 import ctypes
 import os
 import struct
-import threading
 
 import numpy as np
 
@@ -15,17 +14,14 @@ from .. import closed_form
 # Batches of these quantities are computed several states at a time.
 _BATCHED = ('dynamics', 'mass_matrix', 'gravity_torque', 'inverse_dynamics')
 
-# How closely the result of the machine code must meet the general kernel's when it is loaded. Both
-# are right to 1e-14; this tells damaged code from rounding.
+# How closely the results of the machine code must meet the general kernel's when it is loaded.
+# Both are right to 1e-14 of the largest element; this tells damaged code from rounding.
 _AGREEMENT = 1e-9
 
 _SIZE = struct.Struct('<Q')
-_abandoned = threading.Event()
 
-
-def abandon():
-    """Make no more machine code in this process: what is being made ends after its next step."""
-    _abandoned.set()
+# What was loaded once stays: a robot's next model shares it.
+_loaded: dict = {}
 
 
 def is_wanted():
@@ -63,15 +59,17 @@ class RobotCode:
 
         """
         self.lanes = machine.lanes()
-        self.loaded = machine.LoadedCode(_split(object_files))
-        self._batch = {name: self._batch_function(name) for name in _BATCHED}
+        self.loaded = machine.LoadedCode(_split(object_files), [
+            *quantities.SIGNATURES, *(f'{name}_call' for name in quantities.SIGNATURES),
+            *(f'{name}_batch' for name in _BATCHED)])
+        self._batch = {name: self._function(f'{name}_batch', name, None, ctypes.c_int64)
+                       for name in _BATCHED}
         self._compare(structure, numbers)
 
-    def _batch_function(self, name):
+    def _function(self, symbol, name, result, *more):
         inputs, outputs = quantities.SIGNATURES[name]
         pointers = [ctypes.c_void_p] * (len(inputs) + 1 + outputs)
-        return ctypes.CFUNCTYPE(None, *pointers, ctypes.c_int64)(
-            self.loaded.address(f'{name}_batch'))
+        return ctypes.CFUNCTYPE(result, *pointers, *more)(self.loaded.address(symbol))
 
     def batch(self, name, gravity, inputs, outputs):
         """
@@ -91,17 +89,47 @@ class RobotCode:
         self._batch[name](*(array.ctypes.data for array in arrays), len(inputs[0]))
 
     def _compare(self, structure, numbers):
+        # Every function at one state, which the batches get several times.
         n = int(structure[:, 2].max()) + 1
-        q, qd = np.random.default_rng(1).uniform(-1.0, 1.0, (2, self.lanes, n))
-        shape = (self.lanes, n, n)
-        expected = np.empty(shape), np.empty(shape), np.empty((self.lanes, n))
-        actual = np.empty(shape), np.empty(shape), np.empty((self.lanes, n))
-        closed_form.dynamics(structure, numbers, q, qd, *expected)
-        self.batch('dynamics', numbers[-1, :3].copy(), (q, qd), actual)
-        for mine, theirs in zip(actual, expected, strict=True):
-            if not np.abs(mine - theirs).max() <= _AGREEMENT * (np.abs(theirs).max() + 1e-3):
-                raise RuntimeError('the machine code computes something else than the general '
-                                   f'kernel; remove it from {store.folder()}')
+        state = dict(zip(('q', 'qd', 'qdd', 'tau'),
+                         np.random.default_rng(1).uniform(-1.0, 1.0, (4, 1, n)), strict=True))
+        expected = _general(structure, numbers, state)
+        gravity = numbers[-1, :3].copy()
+        for name, (inputs, _) in quantities.SIGNATURES.items():
+            arguments = [state[key] for key in inputs]
+            outputs = [np.empty_like(array) for array in expected[name]]
+            function = self._function(name, name, ctypes.c_bool)
+            pointers = [array.ctypes.data for array in (*arguments, gravity, *outputs)]
+            if function(*pointers):
+                _demand_agreement(name, outputs, expected[name])
+            if name in _BATCHED:
+                many = [np.repeat(array, self.lanes, axis=0) for array in expected[name]]
+                self.batch(name, gravity, [np.repeat(array, self.lanes, axis=0)
+                                           for array in arguments], many)
+                _demand_agreement(name, many, expected[name])
+
+
+def _general(structure, numbers, state):
+    q, qd, qdd, tau = (state[key] for key in ('q', 'qd', 'qdd', 'tau'))
+    n = q.shape[1]
+    D, C = np.empty((2, 1, n, n))
+    G, efforts, accelerations, V = np.empty((1, n)), q.copy(), q.copy(), np.empty(1)
+    closed_form.dynamics(structure, numbers, q, qd, D, C, G)
+    closed_form.inverse_dynamics(structure, numbers, q, qd, qdd, efforts)
+    closed_form.forward_dynamics(structure, numbers, q, qd, tau, accelerations,
+                                 np.empty(1, dtype=bool))
+    closed_form.gravity_torque(structure, numbers, q, G, V)
+    return {'dynamics': (D, C, G), 'mass_matrix': (D,), 'coriolis_matrix': (C,),
+            'gravity_torque': (G,), 'inverse_dynamics': (efforts,),
+            'forward_dynamics': (accelerations,)}
+
+
+def _demand_agreement(name, actual, expected):
+    for mine, theirs in zip(actual, expected, strict=True):
+        # Written so that NaN fails.
+        if not np.abs(mine - theirs).max() <= _AGREEMENT * (np.abs(theirs).max() + 1e-3):
+            raise RuntimeError(f'{name}: the machine code computes something else than the '
+                               'general kernel')
 
 
 def are_ordinary(name, inputs):
@@ -141,8 +169,7 @@ def compile_robot(structure, numbers):
     Returns
     -------
     bytes or None
-        Object files, one per quantity; None if the robot is too large for straight-line code, or
-        after `abandon`.
+        Object files, one per quantity; None if the robot is too large for straight-line code.
 
     Raises
     ------
@@ -153,8 +180,6 @@ def compile_robot(structure, numbers):
     lanes = machine.lanes()
     objects = []
     for record in quantities.ALL:
-        if _abandoned.is_set():
-            return None
         try:
             quantity = record(structure, numbers)
         except ProgramTooLongError:
@@ -190,19 +215,24 @@ def from_disk(structure, numbers):
     -------
     RobotCode or None
 
+    Raises
+    ------
+    RuntimeError
+        If what is there cannot be loaded or computes something else.
+
     """
-    object_files = store.load(store.key(structure, numbers))
-    if object_files is None:
-        return None
-    try:
-        return RobotCode(structure, numbers, object_files)
-    except RuntimeError:
-        return None
+    name = store.key(structure, numbers)
+    if name not in _loaded:
+        object_files = store.load(name)
+        if object_files is None:
+            return None
+        _loaded[name] = RobotCode(structure, numbers, object_files)
+    return _loaded[name]
 
 
 def make(structure, numbers):
     """
-    Return a robot's machine code, from disk or compiled and kept there.
+    Return a robot's machine code, from disk or compiled here and now, and kept.
 
     Parameters
     ----------
@@ -212,47 +242,23 @@ def make(structure, numbers):
     Returns
     -------
     RobotCode or None
-        None if the robot is too large for straight-line code, or after `abandon`.
+        None if the robot is too large for straight-line code.
 
     Raises
     ------
     RuntimeError
-        If LLVM does not take the code.
+        If LLVM does not take the code, or it computes something else.
 
     """
-    ready = from_disk(structure, numbers)
-    if ready is not None:
-        return ready
-    object_files = compile_robot(structure, numbers)
-    if object_files is None:
-        return None
-    store.save(store.key(structure, numbers), object_files)
-    return RobotCode(structure, numbers, object_files)
-
-
-def make_in_background(structure, numbers, when_ready):
-    """
-    Make a robot's machine code in a thread of its own.
-
-    Parameters
-    ----------
-    structure, numbers : numpy.ndarray
-        See `packing.pack`.
-    when_ready : callable
-        Called in that thread with the RobotCode, or None if there is none to be had.
-
-    Returns
-    -------
-    threading.Thread
-        Python waits for it at exit, some seconds at most, unless `abandon` was called.
-
-    """
-    def work():
-        try:
-            when_ready(make(structure, numbers))
-        except RuntimeError:
-            when_ready(None)
-
-    thread = threading.Thread(target=work, name='dynamics_node specialise')
-    thread.start()
-    return thread
+    try:
+        ready = from_disk(structure, numbers)
+    except RuntimeError:
+        ready = None
+    if ready is None:
+        object_files = compile_robot(structure, numbers)
+        if object_files is None:
+            return None
+        name = store.key(structure, numbers)
+        store.save(name, object_files)
+        ready = _loaded[name] = RobotCode(structure, numbers, object_files)
+    return ready

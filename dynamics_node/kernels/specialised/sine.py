@@ -7,7 +7,7 @@ angles up to `LARGEST_ANGLE` both are within one unit in the last place.
 
 """
 
-# Beyond this the three parts of pi/2 do not suffice.
+# Of positions: what is larger is left to the general kernel. The tests go that far.
 LARGEST_ANGLE = 1e5
 
 _PI_HALF = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33)

@@ -2,11 +2,12 @@
 Machine code on disk, found by what it was made from.
 
 One file per robot in `~/.cache/dynamics_node` (or where DYNAMICS_NODE_CACHE_DIR or XDG_CACHE_HOME
-say). A file that is damaged, or that somebody else may have written, counts as missing.
+say). A file that is damaged or misplaced, or that somebody else may have written, counts as
+missing.
 
 """
 
-import functools
+import contextlib
 import hashlib
 import os
 from pathlib import Path
@@ -15,25 +16,42 @@ import tempfile
 
 from . import machine
 
-_MAGIC = b'dynamics_node machine code 1\n'
+_MAGIC = b'dynamics_node machine code 2\n'
+# The files that were not used for longest go beyond this: some 30 MB.
+_MOST_FILES = 100
+
+
+def _read_sources():
+    # The formulas and all that turns them into machine code.
+    here = Path(__file__).parent
+    files = sorted([*here.glob('*.py'), here.parent / 'closed_form.py'])
+    return b''.join(path.read_bytes() for path in files)
+
+
+# Read when they are imported: a package that is replaced under a running process must not file
+# old code under the name of the new.
+_SOURCES = _read_sources()
 
 
 def folder():
-    """Return where the machine code is kept."""
+    """
+    Return where the machine code is kept.
+
+    Returns
+    -------
+    pathlib.Path
+
+    Raises
+    ------
+    RuntimeError
+        If nothing says where: no variable, and no home.
+
+    """
     own = os.environ.get('DYNAMICS_NODE_CACHE_DIR')
     if own:
         return Path(own)
-    base = os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache'
-    return Path(base) / 'dynamics_node'
-
-
-@functools.cache
-def _sources():
-    # The formulas and all that turns them into machine code.
-    here = Path(__file__).parent
-    above = [here.parent / 'closed_form.py', here.parent / 'packing.py']
-    files = sorted([*here.glob('*.py'), *above])
-    return b''.join(path.read_bytes() for path in files)
+    base = os.environ.get('XDG_CACHE_HOME')
+    return (Path(base) if base else Path.home() / '.cache') / 'dynamics_node'
 
 
 def key(structure, numbers):
@@ -51,7 +69,7 @@ def key(structure, numbers):
         Hexadecimal digits: a hash of robot, formulas, compiler and processor.
 
     """
-    digest = hashlib.sha256(_sources())
+    digest = hashlib.sha256(_SOURCES)
     digest.update(machine.description().encode())
     digest.update(repr(structure.shape).encode())
     digest.update(structure.tobytes())
@@ -73,16 +91,27 @@ def load(name):
     bytes or None
 
     """
-    path = folder() / name
     try:
-        with path.open('rb') as file:
-            if not _is_ours(os.fstat(file.fileno())):
+        place = folder()
+        if not _is_ours(place.stat()):
+            return None
+        # Neither a link to elsewhere nor a pipe that would never answer.
+        file = os.open(place / name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        with os.fdopen(file, 'rb') as stream:
+            status = os.fstat(file)
+            if not stat.S_ISREG(status.st_mode) or not _is_ours(status):
                 return None
-            content = file.read()
-    except OSError:
+            content = stream.read()
+        os.utime(place / name)
+    except (OSError, RuntimeError):
         return None
-    head, code = content[:len(_MAGIC) + 32], content[len(_MAGIC) + 32:]
-    return code if head == _MAGIC + hashlib.sha256(code).digest() else None
+    size = len(_head(name, b''))
+    head, code = content[:size], content[size:]
+    return code if head == _head(name, code) else None
+
+
+def _head(name, code):
+    return _MAGIC + hashlib.sha256(name.encode() + code).digest()
 
 
 def _is_ours(status):
@@ -103,15 +132,30 @@ def save(name, code):
     Returns
     -------
     bool
-        Whether it was kept; where the folder cannot be written, each process compiles anew.
+        Whether it was kept.
 
     """
     try:
-        folder().mkdir(mode=0o700, parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=folder(), delete=False) as file:
-            file.write(_MAGIC + hashlib.sha256(code).digest() + code)
-        # Complete or not there: other processes may look for it at the same time.
-        Path(file.name).replace(folder() / name)
-    except OSError:
+        place = folder()
+        place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        _clear(place)
+        with tempfile.NamedTemporaryFile(dir=place, prefix='new-', delete=False) as file:
+            unfinished = Path(file.name)
+            try:
+                file.write(_head(name, code) + code)
+                file.flush()
+                # Complete or not there: others may look for it at the same time.
+                unfinished.replace(place / name)
+            except OSError:
+                unfinished.unlink()
+                raise
+    except (OSError, RuntimeError):
         return False
     return True
+
+
+def _clear(place):
+    files = sorted(place.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
+    for path in files[_MOST_FILES - 1:]:
+        with contextlib.suppress(OSError):
+            path.unlink()

@@ -198,6 +198,17 @@ def test_documentation_and_signature_stay(model):
     assert list(inspect.signature(model.dynamics).parameters) == ['q', 'qd', 'out', 'threads']
 
 
+def test_addresses_cannot_be_written(model):
+    with pytest.raises(ValueError, match='read-only'):
+        model.dynamics.__self__[:] = 0
+
+
+def test_other_users_of_ctypes_see_nothing():
+    import ctypes
+    for name in call._SYMBOLS:
+        assert getattr(ctypes.pythonapi, name).argtypes is None
+
+
 def test_gravity_is_each_models_own(model, arguments):
     other = model.with_gravity((1.0, -2.0, 3.0))
     assert inspect.isbuiltin(other.gravity_torque)

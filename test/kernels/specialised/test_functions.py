@@ -23,7 +23,7 @@ def model(request):
 def test_a_batch_of_any_size_is_the_general_kernels(model, lanes):
     quantity = quantities.dynamics(*pack(model.tree, model.gravity))
     text = '\n'.join([*declarations(lanes), functions.batch_function(quantity, lanes)])
-    loaded = machine.LoadedCode([machine.compile_code(text)])
+    loaded = machine.LoadedCode([machine.compile_code(text)], ['dynamics_batch'])
     function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 6, ctypes.c_int64)(
         loaded.address('dynamics_batch'))
     n, rng = len(model.joint_names), np.random.default_rng(2)

@@ -1,10 +1,9 @@
 """A robot's machine code: made once, found again, compared before it is used."""
 
-import threading
-
 from dynamics_node import RobotModel
+from dynamics_node.kernels import closed_form
 from dynamics_node.kernels.packing import pack
-from dynamics_node.kernels.specialised import robot_code, store
+from dynamics_node.kernels.specialised import quantities, robot_code, store
 import numpy as np
 import pytest
 from support.robots import PENDULUM, random_urdf
@@ -13,6 +12,7 @@ from support.robots import PENDULUM, random_urdf
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(tmp_path))
+    monkeypatch.setattr(robot_code, '_loaded', {})
     return tmp_path
 
 
@@ -22,44 +22,51 @@ def packed():
     return pack(model.tree, model.gravity)
 
 
-def test_what_was_made_is_found_on_disk(packed, folder):
+def test_what_was_made_is_found_on_disk(packed, folder, monkeypatch):
     assert robot_code.from_disk(*packed) is None
     assert robot_code.make(*packed) is not None
     assert [path.name for path in folder.iterdir()] == [store.key(*packed)]
-    assert robot_code.from_disk(*packed) is not None
+    monkeypatch.setattr(robot_code, '_loaded', {})
+    monkeypatch.delattr(robot_code, 'compile_robot')
+    assert robot_code.make(*packed) is not None
 
 
 def test_code_of_another_robot_is_refused(packed):
     other = RobotModel.from_urdf(PENDULUM.read_text().replace('mass value="', 'mass value="3'))
     wrong = robot_code.compile_robot(*pack(other.tree, other.gravity))
     store.save(store.key(*packed), wrong)
-    assert robot_code.from_disk(*packed) is None
     with pytest.raises(RuntimeError, match='something else'):
+        robot_code.from_disk(*packed)
+    assert robot_code.make(*packed) is not None
+
+
+@pytest.mark.parametrize('name', quantities.SIGNATURES)
+def test_one_wrong_function_is_enough(packed, name, monkeypatch):
+    # Each quantity is recorded with a mass of its own, in one function after the other.
+    heavier = packed[1].copy()
+    heavier[0, closed_form.INERTIA:closed_form.MULTIPLIER] *= 1.0 + 1e-6
+    right = {record.__name__: record for record in quantities.ALL}
+    records = [(lambda s, n, f=f, k=k: f(s, heavier if k == name else n))
+               for k, f in right.items()]
+    monkeypatch.setattr(quantities, 'ALL', records)
+    wrong = robot_code.compile_robot(*packed)
+    if name == 'coriolis_matrix':
+        # One joint has none, whatever the mass.
+        robot_code.RobotCode(*packed, wrong)
+        return
+    with pytest.raises(RuntimeError, match=f'{name}: the machine code computes something else'):
         robot_code.RobotCode(*packed, wrong)
 
 
-def test_the_background_tells_when_it_is_ready(packed):
-    answers = []
-    robot_code.make_in_background(*packed, answers.append).join()
-    assert isinstance(answers[0], robot_code.RobotCode)
-
-
-def test_what_is_being_made_can_be_abandoned(packed, monkeypatch, folder):
-    monkeypatch.setattr(robot_code, '_abandoned', threading.Event())
-    robot_code.abandon()
-    answers = []
-    robot_code.make_in_background(*packed, answers.append).join()
-    assert answers == [None]
-    assert list(folder.iterdir()) == []
+def test_models_of_one_robot_share_it(packed):
+    assert robot_code.make(*packed) is robot_code.make(*packed)
+    assert robot_code.from_disk(*packed) is robot_code.make(*packed)
 
 
 def test_a_robot_with_very_many_joints_gets_none():
     model = RobotModel.from_urdf(random_urdf(3, joints=60, with_mimic=False))
     packed = pack(model.tree, model.gravity)
     assert robot_code.make(*packed) is None
-    answers = []
-    robot_code.make_in_background(*packed, answers.append).join()
-    assert answers == [None]
 
 
 def test_ordinary_numbers_are_finite_and_angles_not_too_large():

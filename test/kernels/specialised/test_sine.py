@@ -18,7 +18,7 @@ def compiled(lanes):
         code.do(f'store {code.number} {value}, ptr {pointer}, align 8')
     text = '\n'.join([*declarations(lanes), 'define void @f(ptr %x, ptr %sin, ptr %cos) {',
                       *code.lines, '  ret void', '}'])
-    loaded = machine.LoadedCode([machine.compile_code(text)])
+    loaded = machine.LoadedCode([machine.compile_code(text)], ['f'])
     function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3)(loaded.address('f'))
 
     def sine_cosine(x):

@@ -1,5 +1,7 @@
 """Machine code on disk: found again, never trusted blindly."""
 
+import os
+
 from dynamics_node import RobotModel
 from dynamics_node.kernels.packing import pack
 from dynamics_node.kernels.specialised import store
@@ -41,6 +43,48 @@ def test_a_file_that_others_may_write_counts_as_missing(folder):
     store.save('name', CODE)
     (folder / 'name').chmod(0o666)
     assert store.load('name') is None
+
+
+def test_a_file_under_another_name_counts_as_missing(folder):
+    store.save('name', CODE)
+    (folder / 'name').rename(folder / 'other')
+    assert store.load('other') is None
+
+
+def test_what_is_not_a_plain_file_counts_as_missing(folder):
+    store.save('name', CODE)
+    (folder / 'link').symlink_to(folder / 'name')
+    os.mkfifo(folder / 'pipe')
+    (folder / 'folder').mkdir()
+    assert [store.load(name) for name in ('link', 'pipe', 'folder')] == [None] * 3
+    assert not store.save('folder', CODE)
+    assert not [path for path in folder.iterdir() if path.name.startswith('new-')]
+
+
+def test_a_folder_that_others_may_write_counts_as_empty(folder):
+    store.save('name', CODE)
+    folder.chmod(0o777)
+    assert store.load('name') is None
+
+
+def test_the_oldest_files_go(folder, monkeypatch):
+    monkeypatch.setattr(store, '_MOST_FILES', 3)
+    for number in range(5):
+        store.save(f'{number}', CODE)
+        os.utime(folder / f'{number}', (number, number))
+    assert sorted(path.name for path in folder.iterdir()) == ['2', '3', '4']
+
+
+def test_without_a_home_there_is_no_place(monkeypatch):
+    monkeypatch.delenv('DYNAMICS_NODE_CACHE_DIR')
+    monkeypatch.delenv('XDG_CACHE_HOME', raising=False)
+
+    def no_home():
+        raise RuntimeError('Could not determine home directory.')
+
+    monkeypatch.setattr(store.Path, 'home', no_home)
+    assert store.load('name') is None
+    assert not store.save('name', CODE)
 
 
 def test_a_place_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):

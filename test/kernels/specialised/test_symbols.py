@@ -42,6 +42,11 @@ def test_what_occurs_twice_is_done_once(program, x, y):
     assert len(program.operations) == count
 
 
+def test_zero_and_minus_zero_are_two_numbers(program, x):
+    assert 0.0 - x is -x
+    assert program.record('add', x, 0.0) is not program.record('add', x, -0.0)
+
+
 def test_signs_go_into_sums_and_out_of_products(program, x, y):
     negative = -x
     assert -negative is x

@@ -1,0 +1,91 @@
+"""
+Compiling in a process of its own: `python -m dynamics_node.kernels.specialised.background`.
+
+The process gets the robot on its standard input and leaves the machine code on disk. A thread
+would not do: recording and compiling would stop the caller for tenths of a second, through
+Python's lock, its garbage collector and the compiler's lock.
+
+"""
+
+import atexit
+import contextlib
+import io
+import os
+import subprocess
+import sys
+
+import numpy as np
+
+from . import robot_code, store
+
+# Name of the machine code → the process that makes it, so that no robot is compiled twice.
+_processes: dict = {}
+
+
+def start(structure, numbers):
+    """
+    Start to make a robot's machine code, unless that is being done.
+
+    The process runs on when this one ends, for some seconds.
+
+    Parameters
+    ----------
+    structure, numbers : numpy.ndarray
+        See `packing.pack`.
+
+    Returns
+    -------
+    subprocess.Popen
+        Its exit code is 0 if the machine code is on disk.
+
+    Raises
+    ------
+    OSError
+        If no process can be started.
+
+    """
+    name = store.key(structure, numbers)
+    if name not in _processes:
+        # It finds the same packages, is nobody's foreground, and gives way to everything else.
+        environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
+        process = subprocess.Popen(
+            [sys.executable, '-m', __name__], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL, env=environment, start_new_session=True)
+        _processes[name] = process
+        np.savez(buffer := io.BytesIO(), structure=structure, numbers=numbers)
+        assert process.stdin is not None
+        with contextlib.suppress(BrokenPipeError), process.stdin as stream:
+            stream.write(buffer.getvalue())
+    return _processes[name]
+
+
+@atexit.register
+def _let_go():
+    # Python would complain of a process that still runs.
+    for process in _processes.values():
+        if process.poll() is None:
+            process.returncode = 0
+
+
+def main():
+    """
+    Make the machine code of the robot on standard input.
+
+    Returns
+    -------
+    int
+        0 if it is on disk, 1 if there is none.
+
+    """
+    with contextlib.suppress(OSError, AttributeError):
+        os.nice(10)
+    with np.load(io.BytesIO(sys.stdin.buffer.read())) as robot:
+        structure, numbers = robot['structure'], robot['numbers']
+    object_files = robot_code.compile_robot(structure, numbers)
+    if object_files is None:
+        return 1
+    return 0 if store.save(store.key(structure, numbers), object_files) else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())

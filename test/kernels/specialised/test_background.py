@@ -1,0 +1,39 @@
+"""Another process compiles, once per robot, and leaves the machine code on disk."""
+
+from dynamics_node import RobotModel
+from dynamics_node.kernels.packing import pack
+from dynamics_node.kernels.specialised import background, store
+import pytest
+from support.robots import PENDULUM, random_urdf
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(tmp_path))
+    monkeypatch.setattr(background, '_processes', {})
+    return tmp_path
+
+
+def packed(text):
+    model = RobotModel.from_urdf(text)
+    return pack(model.tree, model.gravity)
+
+
+def test_the_code_is_on_disk_when_it_ends(folder):
+    robot = packed(PENDULUM)
+    process = background.start(*robot)
+    assert background.start(*robot) is process
+    assert process.wait(60.0) == 0
+    assert [path.name for path in folder.iterdir()] == [store.key(*robot)]
+
+
+def test_it_says_when_there_is_none(folder):
+    process = background.start(*packed(random_urdf(3, joints=60, with_mimic=False)))
+    assert process.wait(60.0) == 1
+    assert list(folder.iterdir()) == []
+
+
+def test_a_place_that_cannot_be_written_gives_none(folder, monkeypatch):
+    (folder / 'file').write_text('')
+    monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(folder / 'file' / 'cache'))
+    assert background.start(*packed(PENDULUM)).wait(60.0) == 1
