@@ -12,9 +12,10 @@ from ..errors import ArgumentError, SingularMassMatrixError
 from ..kernels import closed_form
 from ..kernels.specialised import are_ordinary
 
-# States that one thread computes in one go: enough to make the call cheap, few enough to share
-# the work evenly. Only more than one piece is worth a second thread.
-_PIECE = 1024
+# States that one thread computes in one go: so many that the Python between two pieces, which no
+# two threads run at a time, does not count; few enough to share the work evenly. One state that
+# is not ordinary sends its piece to the general kernel.
+_PIECE = 8192
 
 _FLOAT = np.dtype(np.float64)
 
@@ -202,13 +203,21 @@ def _in_pieces(compute, arrays, outputs, count, threads):
         rows = slice(count * i // pieces, count * (i + 1) // pieces)
         compute([array[rows] for array in arrays], [output[rows] for output in outputs])
 
-    if threads == 1:
-        for i in range(pieces):
+    remaining = iter(range(pieces))
+
+    def work():
+        for i in remaining:
             piece(i)
-    else:
-        with ThreadPoolExecutor(min(threads, pieces)) as pool:
-            # The list passes on what a piece has raised.
-            list(pool.map(piece, range(pieces)))
+
+    helpers = min(threads, pieces) - 1
+    if helpers == 0:
+        work()
+        return
+    with ThreadPoolExecutor(helpers) as pool:
+        others = [pool.submit(work) for _ in range(helpers)]
+        work()
+        for other in others:
+            other.result()
 
 
 def _checked_threads(threads):

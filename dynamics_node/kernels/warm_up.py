@@ -7,7 +7,7 @@ The kernels do not depend on the robot, so after this no robot ever waits for th
 
 import numpy as np
 
-from . import closed_form
+from . import closed_form, specialised
 from .packing import WIDTH
 
 
@@ -23,6 +23,7 @@ def warm_up():
     closed_form.mass_matrix(structure, numbers, q, matrix)
     closed_form.gravity_torque(structure, numbers, q, vector, np.empty(1))
     closed_form.inverse_dynamics(structure, numbers, q, q, q, vector)
+    specialised.are_ordinary('dynamics', [q, q])
     closed_form.forward_dynamics(structure, numbers, q, q, q, vector, np.empty(1, dtype=bool))
 
 

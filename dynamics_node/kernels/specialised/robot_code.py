@@ -10,6 +10,7 @@ from . import call, code, functions, machine, quantities, store
 from .sine import LARGEST_ANGLE
 from .symbols import ProgramTooLongError
 from .. import closed_form
+from ..jit import compiled
 
 # Batches of these quantities are computed several states at a time.
 _BATCHED = ('dynamics', 'mass_matrix', 'gravity_torque', 'inverse_dynamics')
@@ -149,12 +150,18 @@ def are_ordinary(name, inputs):
 
     """
     arguments, _ = quantities.SIGNATURES[name]
-    for argument, values in zip(arguments, inputs, strict=True):
-        bound = LARGEST_ANGLE if argument == 'q' else call.LARGEST_NUMBER
-        # Written so that NaN fails.
-        if not (values.max(initial=0.0) < bound and values.min(initial=0.0) > -bound):
-            return False
-    return True
+    return all(_is_below(values, LARGEST_ANGLE if argument == 'q' else call.LARGEST_NUMBER)
+               for argument, values in zip(arguments, inputs, strict=True))
+
+
+@compiled
+def _is_below(values, bound):
+    # One look at each number; NaN is not below anything.
+    below = True
+    for b in range(values.shape[0]):
+        for i in range(values.shape[1]):
+            below &= abs(values[b, i]) < bound
+    return below
 
 
 def compile_robot(structure, numbers):
