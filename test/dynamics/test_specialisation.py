@@ -14,7 +14,10 @@ from dynamics_node.kernels import specialised
 from dynamics_node.kernels.specialised import background, robot_code
 import numpy as np
 import pytest
+from support.machine_code import needs_machine_code
 from support.robots import PENDULUM, random_urdf
+
+pytestmark = needs_machine_code
 
 
 @pytest.fixture(autouse=True)
@@ -145,7 +148,7 @@ class Arm:
     def __del__(self):
         self.hold()
 
-for _ in range(30):
+for _ in range(10):
     model = RobotModel.from_urdf({str(PENDULUM)!r})
     assert model.specialise()
     Arm(model)

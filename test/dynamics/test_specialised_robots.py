@@ -3,8 +3,11 @@
 from dynamics_node import RobotModel
 import pytest
 from support.extreme_robots import extreme_robots
+from support.machine_code import needs_machine_code
 from support.robots import public_robot
 from support.sweep import BOUND, row
+
+pytestmark = needs_machine_code
 
 # Compiling takes a second or two each; the general kernel is held to this on all robots, and
 # `kernels/specialised` holds the machine code to the general kernel on random trees.

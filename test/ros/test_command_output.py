@@ -30,8 +30,7 @@ def level(client):
 
 def enabled(client, action):
     """Enable the output and wait until it is ACTIVE."""
-    client.until(client.states.get_subscription_count, action)
-    client.during(0.3, action)
+    client.until_heard(action)
     answer = client.enable(True, action)
     assert answer.success, answer.message
     client.until(client.output_is('ACTIVE'), action)

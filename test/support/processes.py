@@ -7,6 +7,7 @@ import sys
 import time
 
 from dynamics_interfaces.msg import OutputState
+from dynamics_interfaces.srv import GetGravityTorque
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import qos_profile_sensor_data, QoSDurabilityPolicy, QoSProfile
@@ -117,6 +118,14 @@ class Client:
         future = client.call_async(request or kind.Request())
         self.until(future.done, action, timeout)
         return future.result()
+
+    def until_heard(self, action):
+        """Wait until the node receives the joint states that `action` publishes."""
+        # Discovery has two sides: that we know the node's subscription does not mean that the
+        # node knows us.
+        self.until(self.states.get_subscription_count, action)
+        self.until(lambda: self.call(GetGravityTorque, '/dynamics_node/get_gravity_torque',
+                                     action=action).success, action)
 
     def enable(self, value, action=None):
         """Ask for output on or off."""

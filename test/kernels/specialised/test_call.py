@@ -11,9 +11,10 @@ from dynamics_node import ArgumentError, DynamicsTerms, RobotModel, SingularMass
 from dynamics_node.kernels.specialised import call
 import numpy as np
 import pytest
+from support.machine_code import needs_machine_code
 from support.robots import random_urdf
 
-pytestmark = pytest.mark.skipif(not call.is_supported(), reason='another Python than CPython')
+pytestmark = needs_machine_code
 
 QUANTITIES = {'dynamics': 2, 'coriolis_matrix': 2, 'mass_matrix': 1, 'gravity_torque': 1,
               'inverse_dynamics': 3, 'forward_dynamics': 3}
