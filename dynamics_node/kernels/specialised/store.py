@@ -11,6 +11,7 @@ import contextlib
 import hashlib
 import os
 from pathlib import Path
+import re
 import stat
 import tempfile
 
@@ -19,6 +20,8 @@ from . import machine
 _MAGIC = b'dynamics_node machine code 2\n'
 # The files that were not used for longest go beyond this: some 30 MB.
 _MOST_FILES = 100
+# What `key` returns.
+_NAME = re.compile('[0-9a-f]{64}')
 
 
 def _read_sources():
@@ -155,7 +158,12 @@ def save(name, code):
 
 
 def _clear(place):
-    files = sorted(place.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
-    for path in files[_MOST_FILES - 1:]:
+    # Only files of ours: the folder may be one that is used for other things too.
+    ages = []
+    for path in place.iterdir():
+        if _NAME.fullmatch(path.name):
+            with contextlib.suppress(OSError):  # gone already: another process clears too
+                ages.append((path.stat().st_mtime, path))
+    for _, path in sorted(ages, reverse=True)[_MOST_FILES - 1:]:
         with contextlib.suppress(OSError):
             path.unlink()

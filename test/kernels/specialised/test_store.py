@@ -69,10 +69,22 @@ def test_a_folder_that_others_may_write_counts_as_empty(folder):
 
 def test_the_oldest_files_go(folder, monkeypatch):
     monkeypatch.setattr(store, '_MOST_FILES', 3)
-    for number in range(5):
-        store.save(f'{number}', CODE)
-        os.utime(folder / f'{number}', (number, number))
-    assert sorted(path.name for path in folder.iterdir()) == ['2', '3', '4']
+    names = [f'{number:064x}' for number in range(5)]
+    for number, name in enumerate(names):
+        store.save(name, CODE)
+        os.utime(folder / name, (number, number))
+    assert sorted(path.name for path in folder.iterdir()) == names[2:]
+
+
+def test_files_that_are_not_ours_stay(folder, monkeypatch):
+    monkeypatch.setattr(store, '_MOST_FILES', 1)
+    folder.mkdir(mode=0o700)
+    for name in ('thesis.tex', 'photo.jpg', 'name'):
+        (folder / name).write_text('mine')
+    store.save(f'{1:064x}', CODE)
+    store.save(f'{2:064x}', CODE)
+    assert sorted(path.name for path in folder.iterdir()) == [
+        f'{2:064x}', 'name', 'photo.jpg', 'thesis.tex']
 
 
 def test_without_a_home_there_is_no_place(monkeypatch):
