@@ -23,7 +23,7 @@ setup(
         (f'share/{package_name}/config', files('config', '*.yaml')),
         (f'share/{package_name}/config/robots', files('config/robots', '*.urdf')),
     ],
-    install_requires=['setuptools', 'numpy', 'numba', 'yourdfpy'],
+    install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'yourdfpy'],
     extras_require={
         'demo': ['mujoco', 'matplotlib', 'rich'],
         'test': ['pytest', 'hypothesis', 'scipy', 'pin', 'mujoco', 'example-robot-data'],

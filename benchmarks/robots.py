@@ -41,6 +41,24 @@ class Robot:
         """Number of joints."""
         return len(self.model.joint_names)
 
+    def demand_order(self, names):
+        """
+        Hold a library to the order of joints in which all get the same numbers.
+
+        Parameters
+        ----------
+        names : tuple of str
+            Joints in the library's order.
+
+        Raises
+        ------
+        ValueError
+            If it is another one.
+
+        """
+        if names != self.model.joint_names:
+            raise ValueError(f'joints: expected {self.model.joint_names}, got {names}')
+
 
 def arms():
     """

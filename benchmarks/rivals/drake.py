@@ -40,8 +40,7 @@ def plant_of(robot):
     moving = sorted((joint for joint in joints if joint.num_velocities()),
                     key=lambda joint: joint.velocity_start())
     names = tuple(joint.name() for joint in moving)
-    if names != robot.model.joint_names:
-        raise ValueError(f'joints: expected {robot.model.joint_names}, got {names}')
+    robot.demand_order(names)
     return plant
 
 

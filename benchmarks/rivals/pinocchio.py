@@ -30,8 +30,7 @@ def model_of(robot):
     """
     model = pinocchio.buildModelFromXML(robot.text)
     names = tuple(model.names)[1:]
-    if names != robot.model.joint_names:
-        raise ValueError(f'joints: expected {robot.model.joint_names}, got {names}')
+    robot.demand_order(names)
     return model
 
 

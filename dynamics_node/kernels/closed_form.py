@@ -48,6 +48,11 @@ _PRISMATIC = 1
 _EPSILON = 2.0**-52
 
 
+def joint_count(structure):
+    """Return the number of independent joints of a robot, n."""
+    return int(structure[:, COORDINATE].max()) + 1
+
+
 # For every robot, B states at once ---------------------------------------------------------
 
 

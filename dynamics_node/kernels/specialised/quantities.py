@@ -58,13 +58,11 @@ class _Robot:
     def __init__(self, structure, numbers):
         self.program = Program(MOST_OPERATIONS)
         self.structure = structure
-        self.n = int(structure[:, 2].max()) + 1
+        self.n = closed_form.joint_count(structure)
         self.numbers = numbers.astype(object)
         self.numbers[-1, :3] = self.inputs('gravity', 3)
-        bodies = len(structure)
-        widths = (closed_form.POSE, closed_form.TWIST, closed_form.COMPOSITE, closed_form.TWIST,
-                  closed_form.TWIST, closed_form.MOMENTUM)
-        self.work = tuple(np.zeros((bodies, width), dtype=object) for width in widths)
+        self.work = tuple(array.astype(object)
+                          for array in closed_form.workspace(len(structure)))
 
     def inputs(self, name, count=None):
         count = self.n if count is None else count

@@ -91,7 +91,7 @@ class RobotCode:
 
     def _compare(self, structure, numbers):
         # Every function at one state, which the batches get several times.
-        n = int(structure[:, 2].max()) + 1
+        n = closed_form.joint_count(structure)
         state = dict(zip(('q', 'qd', 'qdd', 'tau'),
                          np.random.default_rng(1).uniform(-1.0, 1.0, (4, 1, n)), strict=True))
         expected = _general(structure, numbers, state)
