@@ -65,12 +65,43 @@ class JointStateBuffer:
         self._stamp = [0] * len(names)
         self._oldest = self._forgotten = -math.inf
         self._jumps = 0
+        self._clock = 0
         self._known_names = None
         self._pairs: list[tuple[int, int]] = []
         self._needed_pairs: list[tuple[int, int]] = []
         self._has_all_needed = False
         self.accepted = 0
         self.rejected: Counter[str] = Counter()
+
+    def follow_clock(self, clock):
+        """
+        Notice that the clock of the stamps has gone back; what was measured before is forgotten.
+
+        Parameters
+        ----------
+        clock : int
+            That clock now, ns.
+
+        Returns
+        -------
+        float
+            By how much it has gone back, s; 0.0 for less than stamps may be wrong anyway.
+
+        Raises
+        ------
+        RejectedStateError
+            Kind 'no clock': it stands at zero, so it is simulated time that nobody publishes.
+
+        """
+        if not clock:
+            self.rejected['no clock'] += 1
+            raise RejectedStateError('no clock', 'use_sim_time is true, but nothing has come on '
+                                     '/clock yet: start the simulation, or set it to false')
+        back, self._clock = (self._clock - clock) * 1e-9, clock
+        if back <= self.tolerance.seconds:
+            return 0.0
+        self.forget()
+        return back
 
     def update(self, now, names, positions, velocities=(), stamp=0, clock=0):
         """
