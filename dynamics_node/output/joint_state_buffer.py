@@ -217,8 +217,7 @@ class JointStateBuffer:
     def _learn(self, names):
         # The mapping by name; kept until a message names other joints or another order.
         if len(names) > MAX_NAMES:
-            raise RejectedStateError('too many names', f'expected at most {MAX_NAMES} names, '
-                                     f'got {len(names)}')
+            raise too_many_names(len(names))
         if len(set(names)) != len(names):
             twice = sorted(name for name, count in Counter(names).items() if count > 1)
             raise RejectedStateError('name twice', 'expected each joint once, got twice: '
@@ -287,3 +286,8 @@ class JointStateBuffer:
 
         """
         return [self._names[i] for i in self._needed if now - self._time[i] > timeout]
+
+
+def too_many_names(count):
+    """Return the error about a message with more names than any robot has."""
+    return RejectedStateError('too many names', f'expected at most {MAX_NAMES} names, got {count}')

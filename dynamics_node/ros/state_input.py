@@ -82,9 +82,11 @@ class StateInput:
         try:
             message = self._reader.read(data)
         except Exception as error:  # no joint state: several of rclpy's exceptions say so
+            if not isinstance(error, RejectedStateError):
+                error = RejectedStateError('unreadable', str(error))
             if robot is not None:
-                robot.buffer.rejected['unreadable'] += 1
-            self._warn(RejectedStateError('unreadable', str(error)))
+                robot.buffer.rejected[error.kind] += 1
+            self._warn(error)
             return
         self._take(robot, message, info)
 
