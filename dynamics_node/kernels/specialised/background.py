@@ -47,7 +47,10 @@ def start(structure, numbers):
     name = store.key(structure, numbers)
     if name not in _processes:
         # It finds the same packages, is nobody's foreground, and gives way to everything else.
-        environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
+        # The same and no others: with -m alone, Python would look into the current folder first,
+        # and a numpy.py that somebody left there would run.
+        places = os.pathsep.join(place or os.getcwd() for place in sys.path)
+        environment = dict(os.environ, PYTHONPATH=places, PYTHONSAFEPATH='1')
         process = subprocess.Popen(
             [sys.executable, '-m', __name__], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL, env=environment, start_new_session=True)
