@@ -45,6 +45,16 @@ def test_a_place_that_cannot_be_written_gives_none(folder, monkeypatch):
     assert background.start(*packed(PENDULUM)).wait(60.0) == 1
 
 
+def test_a_flood_of_robots_does_not_become_a_flood_of_processes(monkeypatch):
+    monkeypatch.setattr(background, '_MOST_AT_ONCE', 1)
+    robot, other = packed(PENDULUM), packed(random_urdf(1, joints=2))
+    process = background.start(*robot)
+    assert background.start(*other) is None
+    assert background.start(*robot) is process
+    assert process.wait(60.0) == 0
+    assert background.start(*other).wait(60.0) == 0
+
+
 @needs_machine_code
 def test_nothing_that_lies_in_the_current_folder_runs(tmp_path_factory, monkeypatch):
     current = tmp_path_factory.mktemp('somebody_elses')
