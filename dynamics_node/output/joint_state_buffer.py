@@ -220,8 +220,9 @@ class JointStateBuffer:
             raise too_many_names(len(names))
         if len(set(names)) != len(names):
             twice = sorted(name for name, count in Counter(names).items() if count > 1)
+            # Anybody may have written them: short, and without what a terminal would obey.
             raise RejectedStateError('name twice', 'expected each joint once, got twice: '
-                                     + ', '.join(twice[:5]))
+                                     + ', '.join(repr(name[:40]) for name in twice[:5]))
         self._pairs = [(i, self._index[name]) for i, name in enumerate(names)
                        if name in self._index]
         needed = set(self._needed)

@@ -62,7 +62,7 @@ def test_a_joint_never_measured_stands_at_its_neutral_position():
     (['a', 'b'], [1.0], [], 'length', 'expected 2 positions for 2 names, got 1'),
     (['a'], [], [], 'length', 'expected 1 positions for 1 names, got 0'),
     (['a'], [1.0], [1.0, 2.0], 'length', 'expected 1 velocities or none, got 2'),
-    (['a', 'a'], [1.0, 2.0], [], 'name twice', 'got twice: a'),
+    (['a', 'a'], [1.0, 2.0], [], 'name twice', "got twice: 'a'"),
     (['b', 'a'], [1.0, math.nan], [], 'not finite', 'NaN or infinity for a'),
     (['b', 'a'], [-math.inf, 1.0], [], 'not finite', 'for b'),
     ([str(i) for i in range(MAX_NAMES + 1)], [], [], 'too many names', 'at most 4096'),
@@ -77,6 +77,14 @@ def test_a_bad_message_is_dropped_whole_and_counted(names, position, velocity, k
     assert unit.age(1.0) == 1.0
     np.testing.assert_array_equal(unit.position, [1, 2, 3])
     np.testing.assert_array_equal(unit.velocity, [4, 5, 6])
+
+
+def test_names_in_the_message_are_short_and_harmless_to_a_terminal():
+    name = '\x1b]0;title\x07\n' + 'x' * 10_000
+    with pytest.raises(RejectedStateError) as caught:
+        buffer().update(0.0, [name, name], [1.0, 2.0])
+    assert len(str(caught.value)) < 200
+    assert str(caught.value).isprintable()
 
 
 def test_a_bad_message_does_not_spoil_the_next_one():
