@@ -3,7 +3,7 @@
 import math
 import re
 
-from .words import quoted
+from ..errors import quoted
 
 # What URDF writes as a number: no 'nan', no 'inf', no '1_0', no hexadecimal. No two repetitions
 # that could share the same digits: a long text would be tried in every division.

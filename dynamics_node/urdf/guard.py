@@ -3,8 +3,7 @@
 import re
 from xml.parsers import expat
 
-from .words import quoted
-from ..errors import RobotDescriptionError
+from ..errors import quoted, RobotDescriptionError
 
 MAX_BYTES = 5_000_000
 MAX_LINKS = 1_000

@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from .words import quoted
+from ..errors import quoted
 
 SUPPORTED_TYPES = ('revolute', 'continuous', 'prismatic', 'fixed')
 UNSUPPORTED_TYPES = ('floating', 'planar')

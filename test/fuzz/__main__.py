@@ -64,11 +64,12 @@ def _be_strict():
     # Machine code of its own for every robot would be compiled in another process.
     os.environ['DYNAMICS_NODE_SPECIALISE'] = '0'
     logging.getLogger().addHandler(_NothingLogged())
-    faulthandler.enable()
+    # A file of its own: standard error is somewhere else while rclpy may print.
+    faulthandler.enable(os.dup(2))
 
 
 def _replay(path):
-    door = next((door for door in _DOORS if door.SUFFIX == path.suffix), None)
+    door = next((door for door in _DOORS if path.suffix == door.SUFFIX), None)
     if door is None:
         print(f"error: expected a file ending in {' or '.join(door.SUFFIX for door in _DOORS)}, "
               f"got '{path}'", file=sys.stderr)

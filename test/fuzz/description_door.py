@@ -41,7 +41,7 @@ def check(data):
 
     Returns
     -------
-    str
+    list of str
         How it was answered: 'taken' or the first words of what is wrong.
 
     Raises
@@ -51,7 +51,7 @@ def check(data):
 
     """
     with nothing_opened():
-        return _answer(data)
+        return [_answer(data)]
 
 
 def _answer(data):

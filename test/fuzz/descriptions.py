@@ -10,7 +10,7 @@ from .mutated_bytes import broken
 from .mutated_xml import changed_text, changed_tree, grown_text
 
 # Every element that dynamics reads, and those that it must not look at.
-EVERYTHING = '''<?xml version="1.0"?>
+EVERYTHING = """<?xml version="1.0"?>
 <robot name="everything">
   <material name="m"><texture filename="file:///nowhere/t.png"/></material>
   <link name="base"/>
@@ -36,7 +36,9 @@ EVERYTHING = '''<?xml version="1.0"?>
   <gazebo reference="arm"><plugin filename="lib.so"><x y="z">0</x></plugin></gazebo>
   <ros2_control name="c" type="system"><joint name="shoulder"/></ros2_control>
 </robot>
-'''
+"""
+# What kinds of changes, and how often of each: most of them leave it XML.
+_CHANGES = ('tree',) * 16 + ('text', 'text', 'encoding', 'bytes')
 _ENCODINGS = ('utf-8-sig', 'utf-16', 'utf-16-be', 'utf-32', 'latin-1', 'cp1252', 'utf-7')
 _DECLARED = ('utf-8', 'utf-16', 'shift_jis', 'utf-7', 'nonsense', '')
 
@@ -52,35 +54,36 @@ def descriptions():
     """
     Return a strategy of bytes that may, or may not, describe a robot.
 
-    Hypothesis chooses the robot and a list of seeds, one per change, and makes a list that finds
+    Hypothesis chooses a robot and a list of seeds, one per change, and makes a list that finds
     something shorter. What a change does comes from its seed: to choose every place and value by
     hypothesis takes ten times as long as to read the robot.
 
     """
-    seed = st.integers(0, 2**32)
-    none = st.just([])
-    some = st.lists(seed, min_size=1, max_size=3)
-    changed = st.builds(
-        _changed, st.integers(0, len(bases()) - 1), st.lists(seed, min_size=1, max_size=4),
-        st.one_of(none, none, none, some), st.one_of(*[none] * 7, some),
-        st.one_of(none, none, none, none, some))
-    raw = st.builds(_changed, st.integers(0, len(bases()) - 1), none, none, none, some)
-    grown = st.builds(lambda seed: grown_text(random.Random(seed)).encode(), seed)
-    return st.one_of(*[changed] * 7, raw, grown, st.binary(max_size=200), st.text(
-        max_size=200).map(lambda text: text.encode('utf-8', errors='surrogatepass')))
+    seeds = st.lists(st.integers(0, 2**32), max_size=4)
+    ways = {-1: st.builds(lambda seed: grown_text(random.Random(seed)).encode(),
+                          st.integers(0, 2**32)),
+            -2: st.binary(max_size=200),
+            -3: st.text(max_size=200).map(lambda text: text.encode(errors='surrogatepass'))}
+    robots = [st.builds(_changed, st.just(text), seeds) for text in bases()]
+    return st.integers(-3, 2 * len(robots) - 1).flatmap(
+        lambda way: ways[way] if way in ways else robots[way // 2])
 
 
-def _changed(base, in_tree, in_text, in_encoding, in_bytes):
-    text = bases()[base]
-    if in_tree:
-        text = changed_tree([random.Random(seed) for seed in in_tree], text)
-    for seed in in_text:
-        text = changed_text(random.Random(seed), text)
-    data = text.encode('utf-8', errors='surrogatepass')
-    if in_encoding:
-        data = _encoded(random.Random(in_encoding[0]), text)
-    for seed in in_bytes:
-        data = broken(random.Random(seed), data)
+def _changed(text, seeds):
+    rngs = [random.Random(seed) for seed in seeds]
+    changes = {kind: [] for kind in _CHANGES}
+    for rng in rngs:
+        changes[rng.choice(_CHANGES)].append(rng)
+    # Trees before texts before bytes: what is no XML any more cannot be changed as a tree.
+    if changes['tree']:
+        text = changed_tree(changes['tree'], text)
+    for rng in changes['text']:
+        text = changed_text(rng, text)
+    data = text.encode(errors='surrogatepass')
+    for rng in changes['encoding'][:1]:
+        data = _encoded(rng, text)
+    for rng in changes['bytes']:
+        data = broken(rng, data)
     return data
 
 

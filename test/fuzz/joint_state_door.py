@@ -5,6 +5,8 @@ from itertools import count
 import math
 
 from dynamics_node.output import JointStateBuffer, RejectedStateError
+from dynamics_node.output.joint_state_buffer import MAX_NAMES
+from dynamics_node.output.motion_limits import MotionLimits
 from dynamics_node.ros.joint_state_reader import JointStateReader
 import numpy as np
 from rclpy.impl.implementation_singleton import rclpy_implementation
@@ -13,7 +15,8 @@ from sensor_msgs.msg import JointState
 
 from .audit import nothing_opened
 from .first_words import first_words
-from .joint_states import JOINTS, streams
+from .joint_states import CLOCK, JOINTS, PERIOD, streams
+from .printed import nothing_printed, NOWHERE, stderr_to
 
 NAME = 'joint states'
 SUFFIX = '.hex'
@@ -21,7 +24,11 @@ SUFFIX = '.hex'
 _NO_MESSAGE = rclpy_implementation.RMWError
 # The last joint is measured, but nothing depends on it.
 _NEEDED = JOINTS[:3]
-_PERIOD = 0.01
+_LIMITS = MotionLimits(JOINTS, [3.0, 3.0, math.nan, 1.0],
+                       [(-3.0, 3.0), (-math.inf, math.inf), (0.0, 1.0), (0.0, 1.0)],
+                       [False, True, False, False])
+# A text that stands in the log, once a second.
+_LONGEST_MESSAGE = 1_000
 
 
 def inputs():
@@ -31,9 +38,7 @@ def inputs():
 
 def warm_up():
     """Load whatever is loaded lazily."""
-    data = bytes.fromhex('00010000') + bytes(28)
-    for _ in range(2):
-        _answer([data, b''])
+    _answer([bytes.fromhex('00010000') + bytes(28), b''])
 
 
 def to_bytes(stream):
@@ -52,8 +57,8 @@ def check(stream):
 
     Returns
     -------
-    str
-        How the last of them was answered: 'taken', or the first words of what is wrong.
+    list of str
+        How each of them was answered: 'taken', or the first words of what is wrong.
 
     Raises
     ------
@@ -67,40 +72,50 @@ def check(stream):
 
 def _answer(stream):
     reader = JointStateReader()
-    buffer = JointStateBuffer(JOINTS, _NEEDED, np.zeros(len(JOINTS)))
-    answer = ''
-    for data, tick in zip(stream, count()):
+    buffer = JointStateBuffer(JOINTS, _NEEDED, np.zeros(len(JOINTS)), _LIMITS)
+    answers = []
+    for clock, data in zip(count(CLOCK, PERIOD), stream):
         before = _state(buffer)
-        answer = _receive(reader, buffer, data, tick * _PERIOD)
-        after = _state(buffer)
-        if answer != 'taken':
-            assert after == before, f'a refused message changed {before} to {after}'
+        try:
+            _receive(reader, buffer, data, clock)
+            answers.append('taken')
+        except RejectedStateError as error:
+            _judge_refusal(error, before, _state(buffer))
+            answers.append(f'refused: {error.kind}: {first_words(str(error))}')
         _judge(buffer)
-    return answer
+    return answers
 
 
-def _receive(reader, buffer, data, now):
+def _judge_refusal(error, before, after):
+    text = str(error)
+    assert text.isprintable(), f'not to be printed: {text!r}'
+    assert len(text) < _LONGEST_MESSAGE, f'{len(text)} characters: {text:.99}'
+    # After a fault nothing counts as measured, but all stands where it stood.
+    changed = after[:3] != before[:3] if error.is_fault else after != before
+    assert not changed, f'a refused message changed {before} to {after}'
+
+
+def _receive(reader, buffer, data, clock):
     message = _read(reader, data)
-    if message is None:
-        return 'refused: no joint state'
-    try:
-        buffer.update(now, message.name, message.position, message.velocity)
-    except RejectedStateError as error:
-        return f'refused: {error.kind}: {first_words(str(error))}'
-    return 'taken'
+    stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+    buffer.update(clock * 1e-9, message.name, message.position, message.velocity, stamp, clock)
 
 
 def _read(reader, data):
     # What rclpy reads is right; only efforts, which nobody needs, may be missing.
     try:
-        expected = deserialize_message(data, JointState)
+        with stderr_to(NOWHERE):
+            expected = deserialize_message(data, JointState)
     except _NO_MESSAGE:
         expected = None
     try:
-        message = reader.read(data)
-    except _NO_MESSAGE:
-        assert expected is None, 'rclpy reads this message'
-        return None
+        with nothing_printed():
+            message = reader.read(data)
+    except RejectedStateError:
+        # The reader refuses more, but only what no robot sends.
+        assert expected is None or data[:2] not in (b'\x00\x00', b'\x00\x01') \
+            or _is_too_large(expected), 'rclpy reads this message'
+        raise
     assert message.effort == array('d')
     if expected is None:
         for values in (message.position, message.velocity):
@@ -114,10 +129,17 @@ def _read(reader, data):
     return message
 
 
+def _is_too_large(message):
+    return max(len(message.name), len(message.position), len(message.velocity),
+               len(message.effort)) > MAX_NAMES
+
+
 def _state(buffer):
-    # As bytes for the same reason. The time is far from all that come.
-    return (buffer.position.tobytes(), buffer.velocity.tobytes(), buffer.age(1e3),
-            buffer.stale_joints(1e3, 1e3 - 0.5 * _PERIOD), buffer.accepted)
+    # As bytes for the same reason. The time is after all that come.
+    end = (CLOCK + 100 * PERIOD) * 1e-9
+    return (buffer.position.tobytes(), buffer.velocity.tobytes(), buffer.age(end),
+            buffer.accepted, *(buffer.stale_joints(end, age * PERIOD * 1e-9 - 1e-3)
+                               for age in range(90, 101)))
 
 
 def _judge(buffer):

@@ -26,8 +26,8 @@ def print_results(console, results, seed):
 
 
 def _answers(result):
-    table = Table('how they were answered', box=box.SIMPLE_HEAD, title=result.name)
-    table.add_column('inputs', justify='right')
+    table = Table('answers', box=box.SIMPLE_HEAD, title=result.name)
+    table.add_column('times', justify='right')
     common = result.answers.most_common()
     for answer, count in common[:_ANSWERS]:
         table.add_row(escape(answer), str(count))
@@ -37,9 +37,9 @@ def _answers(result):
     return table
 
 
-def _share(result):
-    taken = sum(count for answer, count in result.answers.items() if answer.startswith('taken'))
-    return f'{taken}'
+def _taken(result):
+    return str(sum(count for answer, count in result.answers.items()
+                   if answer.startswith('taken')))
 
 
 def _refused(result):
@@ -49,11 +49,12 @@ def _refused(result):
 
 _FIGURES = (
     ('inputs', lambda result: str(result.inputs)),
-    ('taken', _share),
+    ('taken', _taken),
     ('refused', _refused),
     ('findings', lambda result: str(len(result.findings))),
-    ('slowest input', lambda result: f'{result.slowest * 1e3:.0f} ms'),
+    ('slowest input, processor', lambda result: f'{result.slowest * 1e3:.0f} ms'),
     ('its size', lambda result: f'{result.slowest_size} bytes'),
+    ('slowest input, clock', lambda result: f'{result.longest * 1e3:.0f} ms'),
     ('memory after a tenth', lambda result: f'{result.early_memory:.1f} MB'),
     ('memory at the end', lambda result: f'{result.late_memory:.1f} MB'),
     ('most memory', lambda result: f'{result.peak_memory:.1f} MB'),

@@ -56,7 +56,7 @@ def test_a_joint_never_measured_stands_at_its_neutral_position():
     (['a', 'b'], [1.0], [], 'length', 'expected 2 positions for 2 names, got 1'),
     (['a'], [], [], 'length', 'expected 1 positions for 1 names, got 0'),
     (['a'], [1.0], [1.0, 2.0], 'length', 'expected 1 velocities or none, got 2'),
-    (['a', 'a'], [1.0, 2.0], [], 'name twice', 'got twice: a'),
+    (['a', 'a'], [1.0, 2.0], [], 'name twice', "got twice: 'a'"),
     (['b', 'a'], [1.0, math.nan], [], 'not finite', 'NaN or infinity for a'),
     (['b', 'a'], [-math.inf, 1.0], [], 'not finite', 'for b'),
     ([str(i) for i in range(MAX_NAMES + 1)], [], [], 'too many names', 'at most 4096'),

@@ -1,6 +1,6 @@
-"""Texts from outside, as messages show them."""
+"""What an error says: texts from outside, as messages show them."""
 
-from dynamics_node.urdf.words import quoted
+from dynamics_node.errors import quoted
 import pytest
 
 

@@ -1,0 +1,73 @@
+"""Whether bytes are laid out as a joint state, found out without building anything."""
+
+import struct
+
+from ..output import RejectedStateError
+from ..output.joint_state_buffer import MAX_NAMES
+
+# Plain CDR: what ROS 2 middlewares send. The others are for types that can grow.
+_COUNTS = {b'\x00\x00': struct.Struct('>I'), b'\x00\x01': struct.Struct('<I')}
+# The representation, which is no part of the alignment, and behind it the stamp.
+ORIGIN, FRAME = 4, 12
+_COUNT = 4
+_DOUBLE = 8
+
+
+def end_of_names(data):
+    """
+    Prove that bytes are a joint state of a possible size, and return where its names end.
+
+    rclpy would believe a count, build everything up to the first wrong one, and print a line of
+    its own for each wrong message, however many come.
+
+    Parameters
+    ----------
+    data : bytes
+        As a subscription with `raw=True` delivers it.
+
+    Returns
+    -------
+    int
+        Where the positions begin.
+
+    Raises
+    ------
+    RejectedStateError
+        Kind 'unreadable', or 'too many names'.
+
+    """
+    number = _COUNTS.get(data[:2])
+    if number is None:
+        raise RejectedStateError('unreadable', 'expected plain CDR, got representation '
+                                 f'{data[:2].hex() or "of no bytes"}')
+    try:
+        at = _behind_text(data, FRAME, number)
+        count, at = _count(data, at, number, 'names')
+        for _ in range(count):
+            at = _behind_text(data, at, number)
+        end = at
+        for what in ('positions', 'velocities', 'efforts'):
+            count, at = _count(data, at, number, what)
+            if count:
+                at += (ORIGIN - at) % _DOUBLE + count * _DOUBLE
+        if at <= len(data):
+            return end
+    except struct.error:
+        # It ends within a count.
+        pass
+    raise RejectedStateError('unreadable', f'expected a joint state, got {len(data)} bytes that '
+                             'end too early')
+
+
+def _behind_text(data, at, number):
+    length, = number.unpack_from(data, at)
+    # What follows a text begins at a multiple of four.
+    return at + _COUNT + (length + 3) // 4 * 4
+
+
+def _count(data, at, number, what):
+    count, = number.unpack_from(data, at)
+    if count > MAX_NAMES:
+        raise RejectedStateError('too many names', f'expected at most {MAX_NAMES} {what}, got '
+                                 f'{count}')
+    return count, at + _COUNT
