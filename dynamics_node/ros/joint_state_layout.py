@@ -3,7 +3,7 @@
 import struct
 
 from ..output import RejectedStateError
-from ..output.joint_state_buffer import MAX_NAMES
+from ..output.joint_state_buffer import MAX_NAMES, too_many_names
 
 # Plain CDR: what ROS 2 middlewares send. The others are for types that can grow.
 _COUNTS = {b'\x00\x00': struct.Struct('>I'), b'\x00\x01': struct.Struct('<I')}
@@ -17,8 +17,8 @@ def end_of_names(data):
     """
     Prove that bytes are a joint state of a possible size, and return where its names end.
 
-    rclpy would believe a count, build everything up to the first wrong one, and print a line of
-    its own for each wrong message, however many come.
+    A million names would keep rclpy, and so the arm, waiting for a second; and for many a wrong
+    message it prints a line of its own, however many come.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def end_of_names(data):
     Raises
     ------
     RejectedStateError
-        Kind 'unreadable', or 'too many names'.
+        Kind 'unreadable', 'too many names', or 'length' for more numbers than names can be.
 
     """
     number = _COUNTS.get(data[:2])
@@ -42,12 +42,17 @@ def end_of_names(data):
                                  f'{data[:2].hex() or "of no bytes"}')
     try:
         at = _behind_text(data, FRAME, number)
-        count, at = _count(data, at, number, 'names')
+        count, at = _count(data, at, number)
+        if count > MAX_NAMES:
+            raise too_many_names(count)
         for _ in range(count):
             at = _behind_text(data, at, number)
         end = at
         for what in ('positions', 'velocities', 'efforts'):
-            count, at = _count(data, at, number, what)
+            count, at = _count(data, at, number)
+            if count > MAX_NAMES:
+                raise RejectedStateError('length', f'expected at most {MAX_NAMES} {what}, got '
+                                         f'{count}')
             if count:
                 at += (ORIGIN - at) % _DOUBLE + count * _DOUBLE
         if at <= len(data):
@@ -65,9 +70,5 @@ def _behind_text(data, at, number):
     return at + _COUNT + (length + 3) // 4 * 4
 
 
-def _count(data, at, number, what):
-    count, = number.unpack_from(data, at)
-    if count > MAX_NAMES:
-        raise RejectedStateError('too many names', f'expected at most {MAX_NAMES} {what}, got '
-                                 f'{count}')
-    return count, at + _COUNT
+def _count(data, at, number):
+    return number.unpack_from(data, at)[0], at + _COUNT

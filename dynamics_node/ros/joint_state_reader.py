@@ -49,7 +49,8 @@ class JointStateReader:
         Raises
         ------
         RejectedStateError
-            If it is no joint state, or one of more names than any robot has.
+            If it is no joint state, or says that it has more names or numbers than any robot:
+            before anything is made of them.
         Exception
             What rclpy raises if it finds fault with it all the same.
 

@@ -3,8 +3,9 @@
 from array import array
 from itertools import count
 import math
+from types import SimpleNamespace
 
-from dynamics_node.output import JointStateBuffer, RejectedStateError
+from dynamics_node.output import JointStateBuffer, RejectedStateError, take_state
 from dynamics_node.output.joint_state_buffer import MAX_NAMES
 from dynamics_node.output.motion_limits import MotionLimits
 from dynamics_node.ros.joint_state_reader import JointStateReader
@@ -27,6 +28,7 @@ _NEEDED = JOINTS[:3]
 _LIMITS = MotionLimits(JOINTS, [3.0, 3.0, math.nan, 1.0],
                        [(-3.0, 3.0), (-math.inf, math.inf), (0.0, 1.0), (0.0, 1.0)],
                        [False, True, False, False])
+_TIMEOUT = 0.1
 # A text that stands in the log, once a second.
 _LONGEST_MESSAGE = 1_000
 
@@ -77,8 +79,7 @@ def _answer(stream):
     for clock, data in zip(count(CLOCK, PERIOD), stream):
         before = _state(buffer)
         try:
-            _receive(reader, buffer, data, clock)
-            answers.append('taken')
+            answers.append(_receive(reader, buffer, data, clock))
         except RejectedStateError as error:
             _judge_refusal(error, before, _state(buffer))
             answers.append(f'refused: {error.kind}: {first_words(str(error))}')
@@ -87,9 +88,7 @@ def _answer(stream):
 
 
 def _judge_refusal(error, before, after):
-    text = str(error)
-    assert text.isprintable(), f'not to be printed: {text!r}'
-    assert len(text) < _LONGEST_MESSAGE, f'{len(text)} characters: {text:.99}'
+    _judge_text(str(error))
     # After a fault nothing counts as measured, but all stands where it stood.
     changed = after[:3] != before[:3] if error.is_fault else after != before
     assert not changed, f'a refused message changed {before} to {after}'
@@ -98,7 +97,20 @@ def _judge_refusal(error, before, after):
 def _receive(reader, buffer, data, clock):
     message = _read(reader, data)
     stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
-    buffer.update(clock * 1e-9, message.name, message.position, message.velocity, stamp, clock)
+    faults = []
+    # What take_state asks of an OutputChannel.
+    channel = SimpleNamespace(
+        fault=lambda now, reason: faults.append(reason),
+        restart=lambda now, reason: faults.append(reason),
+        settings=SimpleNamespace(state_timeout=_TIMEOUT))
+    try:
+        is_usable = take_state(buffer, channel, clock * 1e-9, message.name, message.position,
+                               message.velocity, stamp, clock)
+    finally:
+        for text in faults:
+            _judge_text(text)
+    _judge_text(buffer.outside() or '-')
+    return 'taken: fault' if faults else 'taken: usable' if is_usable else 'taken: not complete'
 
 
 def _read(reader, data):
@@ -127,6 +139,11 @@ def _read(reader, data):
         # As bytes: NaN is not equal to itself.
         assert getattr(message, name).tobytes() == getattr(expected, name).tobytes()
     return message
+
+
+def _judge_text(text):
+    assert text.isprintable(), f'not to be printed: {text!r}'
+    assert 0 < len(text) < _LONGEST_MESSAGE, f'{len(text)} characters: {text:.99}'
 
 
 def _is_too_large(message):
