@@ -17,13 +17,14 @@ def structure_problems(robot):
     Parameters
     ----------
     robot : xml.etree.ElementTree.Element
-        The <robot> element.
+        The <robot> element, with nothing in it but what dynamics reads.
 
     Returns
     -------
     list of str
-        One sentence per problem; empty means exactly one root, no cycle, known names that can
-        be printed, joint types that are supported, and mimic chains that end at a movable joint.
+        One sentence per problem; empty means that nothing is said twice, exactly one root, no
+        cycle, known names that can be printed, joint types that are supported, and mimic chains
+        that end at a movable joint.
 
     """
     links = [link.get('name') for link in robot.findall('link')]
@@ -32,6 +33,8 @@ def structure_problems(robot):
     problems += _naming_problems('joint', [joint.get('name') for joint in joints])
     if not links:
         problems.append('it has no <link>')
+    for element in robot:
+        problems += _repetition_problems(element)
     known = set(links)
     for joint in joints:
         problems += _joint_problems(joint, known)
@@ -73,6 +76,18 @@ def _naming_problems(kind, names):
                  f'{MAX_NAME} are accepted' for name in counts if len(name) > MAX_NAME]
     problems += [f'{kind} {quoted(name)}: its name has characters that cannot be printed'
                  for name in counts if not name.isprintable()]
+    return problems
+
+
+def _repetition_problems(element):
+    # Of two, each parser may take another one.
+    where = f'{element.tag} {quoted(element.get("name"))}'
+    problems = []
+    for owner, parent in ((where, element), *((f'{where}: <inertial>', inertial)
+                                              for inertial in element.findall('inertial'))):
+        counts = Counter(part.tag for part in parent)
+        problems += [f'{owner} has {count} <{tag}>, expected one'
+                     for tag, count in counts.items() if count > 1]
     return problems
 
 

@@ -48,7 +48,7 @@ def main(arguments=None):
     options = parser.parse_args(arguments)
     if options.inputs < len(_DOORS):
         parser.error(f'expected at least {len(_DOORS)} inputs, got {options.inputs}')
-    _be_strict()
+    be_strict()
     if options.replay:
         return _replay(options.replay)
     seed = options.seed
@@ -60,7 +60,8 @@ def main(arguments=None):
     return int(any(result.findings for result in results))
 
 
-def _be_strict():
+def be_strict():
+    """Let no line in a log pass, and no other process be started."""
     # Machine code of its own for every robot would be compiled in another process.
     os.environ['DYNAMICS_NODE_SPECIALISE'] = '0'
     logging.getLogger().addHandler(_NothingLogged())

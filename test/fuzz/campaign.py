@@ -1,11 +1,13 @@
 """Thousands of inputs through one door: what came of them, how long they took, what memory."""
 
 from collections import Counter
+from contextlib import contextmanager
 import ctypes
 from dataclasses import dataclass, field
 import gc
 import os
 from pathlib import Path
+import resource
 import signal
 import time
 import traceback
@@ -119,7 +121,7 @@ class Campaign:
                     f'{time.monotonic() - start:.0f} s, {len(result.findings)} findings')
         result.late_memory = memory()
         result.peak_memory = _peak_memory()
-        if result.late_memory > result.early_memory + MAX_GROWTH:
+        if result.early_memory and result.late_memory > result.early_memory + MAX_GROWTH:
             self._found('memory', f'MemoryError: from {result.early_memory:.0f} to '
                         f'{result.late_memory:.0f} MB', b'')
         result.duration = time.monotonic() - start
@@ -196,7 +198,6 @@ def memory():
 
 
 def _peak_memory():
-    import resource
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6
 
 
@@ -206,15 +207,16 @@ def _place(error):
     return f'{Path(frame.filename).name}:{frame.lineno} {type(error).__name__}'
 
 
-class _alarm:  # noqa: N801  (used like a function)
+@contextmanager
+def _alarm():
     """Raise SlowError where the code inside hangs."""
-
-    def __enter__(self):
-        def ring(*_):
-            raise SlowError
-        self._before = signal.signal(signal.SIGALRM, ring)
-        signal.setitimer(signal.ITIMER_REAL, _HANGS)
-
-    def __exit__(self, *_):
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, self._before)
+    def ring(*_):
+        raise SlowError
+    before = signal.signal(signal.SIGALRM, ring)
+    # Somebody else may use the timer to end a test.
+    remaining, interval = signal.setitimer(signal.ITIMER_REAL, _HANGS)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, remaining, interval)
+        signal.signal(signal.SIGALRM, before)

@@ -2,7 +2,7 @@
 
 import re
 
-_WORDS = 8
+_WORDS = 7
 
 
 def first_words(text):

@@ -37,7 +37,7 @@ def _message(rng, clock):
     return rng.choice(_WAYS)(rng, clock)
 
 
-def _right(rng, clock):
+def right(rng, clock):
     """A robot's next state."""
     positions = [0.5 + rng.uniform(-0.01, 0.01) for _ in _USUAL]
     velocities = [rng.uniform(-1.0, 1.0) for _ in _USUAL]
@@ -89,7 +89,7 @@ def _lying(rng, clock):
 
 def _mangled(rng, clock):
     """One or two places broken, of what was well made."""
-    data = (_right if rng.random() < 0.5 else _other)(rng, clock)
+    data = (right if rng.random() < 0.5 else _other)(rng, clock)
     for _ in range(rng.randint(1, 2)):
         data = broken(rng, data)
     return data
@@ -97,7 +97,7 @@ def _mangled(rng, clock):
 
 def _foreign(rng, clock):
     """Another representation is said in front, and numbers may be in that order."""
-    data = (_right if rng.random() < 0.5 else _lying)(rng, clock)
+    data = (right if rng.random() < 0.5 else _lying)(rng, clock)
     return rng.choice((rng.choice(_REPRESENTATIONS), rng.randbytes(4))) + data[4:]
 
 
@@ -106,4 +106,4 @@ def _noise(rng, clock):
     return rng.randbytes(rng.randrange(120))
 
 
-_WAYS = (_right,) * 6 + (_other,) * 6 + (_lying, _lying, _mangled, _mangled, _foreign, _noise)
+_WAYS = (right,) * 6 + (_other,) * 6 + (_lying, _lying, _mangled, _mangled, _foreign, _noise)

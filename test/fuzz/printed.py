@@ -5,7 +5,6 @@ import os
 
 NOWHERE = os.open(os.devnull, os.O_WRONLY)
 _STDERR = 2
-_usual = os.dup(_STDERR)
 _seen = os.memfd_create('printed')
 
 
@@ -16,23 +15,23 @@ class PrintedError(Exception):
 @contextmanager
 def stderr_to(file):
     """Send what is printed inside to another file descriptor."""
+    usual = os.dup(_STDERR)
     os.dup2(file, _STDERR)
     try:
         yield
     finally:
-        os.dup2(_usual, _STDERR)
+        os.dup2(usual, _STDERR)
+        os.close(usual)
 
 
 @contextmanager
 def nothing_printed():
     """Raise PrintedError if something inside prints to standard error."""
+    before = os.lseek(_seen, 0, os.SEEK_END)
     try:
         with stderr_to(_seen):
             yield
     finally:
-        size = os.lseek(_seen, 0, os.SEEK_END)
-        if size:
-            text = os.pread(_seen, 200, 0)
-            os.ftruncate(_seen, 0)
-            os.lseek(_seen, 0, os.SEEK_SET)
+        text = os.pread(_seen, 200, before)
+        if text:
             raise PrintedError(text.decode(errors='replace'))

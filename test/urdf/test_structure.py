@@ -15,6 +15,25 @@ def chain(count, kind='fixed'):
         + '</robot>')
 
 
+INERTIAL = ('<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+            '</inertial>')
+
+
+@pytest.mark.parametrize('link, joint, problem', [
+    ('<inertial/>' + INERTIAL, '', "link 'b' has 2 <inertial>, expected one"),
+    (INERTIAL + INERTIAL, '', "link 'b' has 2 <inertial>, expected one"),
+    (INERTIAL.replace('<mass', '<mass/><mass'), '',
+     "link 'b': <inertial> has 2 <mass>, expected one"),
+    ('', '<origin/><limit/><limit/><limit/>', "joint 'j' has 3 <limit>, expected one"),
+    ('', '<parent link="b"/>', "joint 'j' has 2 <parent>, expected one"),
+])
+def test_what_is_said_twice_is_refused(link, joint, problem):
+    with pytest.raises(RobotDescriptionError) as caught:
+        read_urdf(f'<robot name="r"><link name="a"/><link name="b">{link}</link><joint name="j" '
+                  f'type="fixed"><parent link="a"/><child link="b"/>{joint}</joint></robot>')
+    assert problem in caught.value.problems
+
+
 @pytest.mark.parametrize('written, shown', [
     ('a&#10;[FATAL] all is lost', r"'a\n[FATAL] all is lost'"),
     ('\u202eedoc', r"'\u202eedoc'"),
