@@ -4,6 +4,7 @@ import functools
 import itertools
 import signal
 
+from dynamics_interfaces.srv import GetDynamics
 from dynamics_node import RobotModel
 import numpy as np
 import pytest
@@ -113,13 +114,17 @@ def test_half_of_the_joints_alone_do_not_keep_the_output_alive(client, start):
     assert 'joint_states stale: last 0.5' in client.outputs[-1].reason
 
 
-def test_efforts_are_clamped_to_the_limit(client, start):
+def test_efforts_are_clamped_to_the_limit_and_not_for_long(client, start):
     start(robot_description_file=PENDULUM, effort_limits='[4]')
     client.record_commands()
     publish = level(client)
     enabled(client, publish)
     client.during(0.3, publish)
     assert max(effort for _, [effort] in client.commands) == 4.0
+    client.until(client.output_is('FAULT'), publish)
+    assert client.outputs[-1].reason == (
+        'effort above its limit for 2 s: hinge: 10.3005 limited to 4')
+    assert client.commands[-1][1] == [0.0]
 
 
 def test_garbage_while_active_never_reaches_the_command(client, start):
@@ -241,10 +246,12 @@ def test_enabling_is_refused_while_others_publish(client, start):
     assert '2 publishers on /joint_states' in answer.message
     client.node.destroy_publisher(rival)
     client.node.destroy_publisher(second)
-    client.during(1.0, publish)
-    answer = client.enable(True, publish)
-    assert answer.success, answer.message
-    assert 'but nobody listens there' in answer.message
+    client.until(lambda: client.node.count_publishers(f'/{TOPIC}') == 1, publish)
+    answers = []
+    # The node may hear of it a moment later than this client.
+    client.until(lambda: answers.append(client.enable(True, publish)) or answers[-1].success,
+                 publish)
+    assert 'but nobody listens there' in answers[-1].message
 
 
 def test_without_a_robot_enabling_is_refused_and_disabling_is_answered(client, start):
@@ -311,3 +318,31 @@ def test_a_request_to_disable_counts_more_than_enable_on_start(client, start):
     client.during(2.5, level(client))
     assert client.commands == []
     assert client.outputs[-1].name == 'READY'
+
+
+def test_a_flood_of_calls_does_not_take_the_arms_commands(client, start):
+    start(robot_description_file=PENDULUM)
+    client.record_commands()
+    published, answers = [], []
+
+    def publish():
+        level(client)()
+        published.append(1)
+    enabled(client, publish)
+    service = client.node.create_client(GetDynamics, '/dynamics_node/get_dynamics')
+    client.until(service.service_is_ready, publish)
+
+    def ask(future=None):
+        if future is not None:
+            answers.append(future.result().success)
+        service.call_async(GetDynamics.Request(joint_names=['hinge'] * (len(answers) % 3))
+                           ).add_done_callback(ask)
+    for _ in range(20):  # in flight at any time
+        ask()
+    client.during(0.3, publish)
+    client.commands.clear(), published.clear(), answers.clear()
+    client.during(1.5, publish)
+    assert client.outputs[-1].name == 'ACTIVE'
+    assert len(answers) > 2 * len(published)
+    assert set(answers) == {True, False}
+    assert len(client.commands) > 0.8 * len(published)
