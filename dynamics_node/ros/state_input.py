@@ -1,0 +1,137 @@
+"""The joint states: from the topic into the buffer."""
+
+import time
+
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from sensor_msgs.msg import JointState
+
+from .guard import guarded
+from .joint_state_reader import JointStateReader
+from .qos import joint_states, NO_SUBSCRIPTION_EVENTS
+from .throttle import Throttle
+from ..output import RejectedStateError, take_state
+
+# The shortest time between two warnings about the same thing, s.
+WARN_EVERY = 1.0
+
+
+class StateInput:
+    """
+    Subscribes to the joint states and hands on every one that is fit for use.
+
+    Attributes
+    ----------
+    subscription : rclpy.subscription.Subscription
+    publishers : int
+        How many nodes publish joint states; see `count_publishers`.
+    skipped : int
+        States that were published and never looked at: a newer one was there before, or they
+        were lost on the way. Counted while there is one publisher.
+
+    """
+
+    def __init__(self, node, parameters, get_robot, channel, listener, raw):
+        """
+        Subscribe.
+
+        Parameters
+        ----------
+        node : rclpy.node.Node
+        parameters : Parameters
+        get_robot : callable() -> Robot or None
+        channel : OutputChannel
+            Stopped if the states say that the arm must not be driven.
+        listener : object
+            With `on_state(robot, now, stamp)` for every usable state, and
+            `on_internal_error(message)`.
+        raw : bool
+            Read the states by `JointStateReader` instead of rclpy.
+
+        """
+        self.logger = node.get_logger()
+        self._node = node
+        self._clock = node.get_clock()
+        self._get_robot = get_robot
+        self._channel = channel
+        self._listener = listener
+        self.on_internal_error = listener.on_internal_error
+        self._reader = JointStateReader()
+        self._sequence_number = 0
+        self._has_unstamped = False
+        self._warnings: dict[str, Throttle] = {}
+        self.publishers = self.skipped = 0
+        self.subscription = node.create_subscription(
+            JointState, 'joint_states', self._bytes_received if raw else self._received,
+            joint_states(parameters['allow_several_state_publishers']),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=raw)
+
+    @property
+    def topic(self):
+        """Resolved name of the topic."""
+        return self.subscription.topic_name
+
+    def count_publishers(self):
+        """Look how many publishers there are; called now and then, because it takes time."""
+        self.publishers = self._node.count_publishers(self.topic)
+        return self.publishers
+
+    @guarded
+    def _bytes_received(self, data, info):
+        robot = self._get_robot()
+        try:
+            message = self._reader.read(data)
+        except Exception as error:  # no joint state: several of rclpy's exceptions say so
+            if not isinstance(error, RejectedStateError):
+                error = RejectedStateError('unreadable', str(error))
+            if robot is not None:
+                robot.buffer.rejected[error.kind] += 1
+            self._warn(error)
+            return
+        self._take(robot, message, info)
+
+    @guarded
+    def _received(self, message, info):
+        self._take(self._get_robot(), message, info)
+
+    def _take(self, robot, message, info):
+        self._count_skipped(info['publication_sequence_number'])
+        if robot is None:
+            return
+        now = time.monotonic()
+        clock = self._clock.now().nanoseconds if self._clock.ros_time_is_active else time.time_ns()
+        header_stamp = message.header.stamp
+        stamp = header_stamp.sec * 1_000_000_000 + header_stamp.nanosec
+        try:
+            is_usable = take_state(robot.buffer, self._channel, now, message.name,
+                                   message.position, message.velocity, stamp, clock)
+        except RejectedStateError as error:
+            self._warn(error)
+            return
+        if not is_usable:
+            return
+        outside = robot.buffer.outside()
+        if outside and self._is_due('outside'):
+            self.logger.warning(f'beyond the position limits: {outside}')
+        if not stamp:
+            header_stamp = self._arrival_time()
+        self._listener.on_state(robot, now, header_stamp)
+
+    def _warn(self, error):
+        if self._is_due(error.kind):
+            self.logger.warning(f'joint state dropped: {error}')
+
+    def _is_due(self, kind):
+        return self._warnings.setdefault(kind, Throttle(WARN_EVERY)).is_due()
+
+    def _arrival_time(self):
+        if not self._has_unstamped:
+            self._has_unstamped = True
+            self.logger.info('joint_states has no stamp, arrival time is used')
+        return self._clock.now().to_msg()
+
+    def _count_skipped(self, number):
+        # Each publisher counts for itself, and which one it was rclpy does not say.
+        if number is not None and self._sequence_number and self.publishers == 1:
+            self.skipped += max(number - self._sequence_number - 1, 0)
+        self._sequence_number = number or 0
