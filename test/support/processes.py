@@ -98,7 +98,8 @@ class Client:
         due = time.monotonic()
         while not (result := condition()):
             if time.monotonic() > end:
-                raise AssertionError(f'not within {timeout} s: {condition}')
+                heard = [f'{output.name} {output.reason}' for output in self.outputs[-3:]]
+                raise AssertionError(f'not within {timeout} s: {condition}; output: {heard}')
             if action is not None and time.monotonic() >= due:
                 action()
                 due += period
