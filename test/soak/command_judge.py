@@ -28,6 +28,8 @@ class CommandJudge:
 
     Attributes
     ----------
+    last : list of float, length m
+        The last command judged, N m or N; zeros before the first.
     commands : int
         Commands judged.
     lost : int
@@ -64,7 +66,7 @@ class CommandJudge:
     def forget(self):
         """Expect another node: its output is off, and its commands begin at zero."""
         self._is_off, self._why_off = True, 'before any state'
-        self._last = [0.0] * len(self._limits)
+        self.last = [0.0] * len(self._limits)
         self._now = self._written = -math.inf
         self._number = None
 
@@ -76,13 +78,13 @@ class CommandJudge:
         ----------
         time : float
             When it was written, s.
-        values : sequence of float
+        values : list of float
             N m or N.
         number : int, optional
             Of this message among those of its writer.
 
         """
-        self._take(time, 'command', (list(values), number))
+        self._take(time, 'command', (values, number))
 
     def state(self, time, name):
         """
@@ -140,7 +142,7 @@ class CommandJudge:
             return
         self._judge_limits(time, values)
         self._judge_step(time, values)
-        self._last = values
+        self.last = values
 
     def _judge_limits(self, time, values):
         for joint, (value, limit) in enumerate(zip(values, self._limits)):
@@ -149,10 +151,10 @@ class CommandJudge:
 
     def _judge_step(self, time, values):
         needed, joint = max((abs(value - last) / rate, joint) for joint, (value, last, rate)
-                            in enumerate(zip(values, self._last, self._rate_limits)))
+                            in enumerate(zip(values, self.last, self._rate_limits)))
         earliest = max(self._now + needed, self._written)
         if earliest > time + 1e-6:  # stamps of DDS are exact to less than that
-            self._accuse(time, f'joint {joint}: the step from {self._last[joint]:.6g} to '
+            self._accuse(time, f'joint {joint}: the step from {self.last[joint]:.6g} to '
                                f'{values[joint]:.6g} takes {needed:.6f} s at the rate limit, and '
                                f'is {earliest - time:.6f} s too early')
             earliest = time

@@ -43,20 +43,16 @@ class Relay(Node):
         self.create_service(Trigger, '~/sent', self._say_sent)
 
     def _received(self, data):
-        if self._line.fault == 'none':
-            self._send(data)
-            return
-        for item in self._line.out(deserialize_message(data, JointState)):
-            self._send(item)
-
-    def _send(self, item):
-        if self._offset is not None and isinstance(item, bytes):
-            item = shifted(item, self._offset)
+        if self._offset is not None:
+            data = shifted(data, self._offset)
             clock = Clock()
-            clock.clock.sec, clock.clock.nanosec = divmod(stamp_of(item), 1_000_000_000)
+            clock.clock.sec, clock.clock.nanosec = divmod(stamp_of(data), 1_000_000_000)
             self._clock_publisher.publish(clock)
-        self._states.publish(item)
-        self._sent += 1
+        items = [data] if self._line.fault == 'none' else self._line.out(
+            deserialize_message(data, JointState))
+        for item in items:
+            self._states.publish(item)
+            self._sent += 1
 
     def _set(self, parameters):
         for parameter in parameters:

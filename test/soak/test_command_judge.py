@@ -80,7 +80,7 @@ def test_a_late_command_excuses_the_step_after_it_once_only(judge):
     judge.command(1.002, [0.7, 0.0])  # within 0.002 s, for the clock was read after 1.0
     judge.command(1.003, [1.2, 0.0])  # 0.005 s of the rate limit, at most 0.002 s after that
     [text] = violations(judge)
-    assert text.startswith('at 1.003000') and 'from 0.7 to 1.2 takes 0.0050' in text
+    assert text.startswith('at 1.003000') and 'from 0.7 to 1.2 takes 0.00499' in text
 
 
 def test_limits_length_and_numbers(judge):

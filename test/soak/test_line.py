@@ -97,6 +97,7 @@ def test_nan_is_one_position_that_is_not_finite():
     assert all(sum(not math.isfinite(q) for q in message.position) == 1 for message in out)
     assert {repr(q) for message in out for q in message.position
             if not math.isfinite(q)} == {'nan', 'inf', '-inf'}
+    assert all(map(math.isnan, only(put_through('all_nan')).position))
 
 
 def test_lengths_and_names_do_not_fit():
