@@ -58,7 +58,7 @@ def test_nothing_that_came_in_is_changed_in_place(fault):
 @pytest.mark.parametrize('fault', ['', 'flod', 'nan/0', 'nan/x', 'nan/-1'])
 def test_an_unknown_fault_is_refused_with_the_known_ones(fault):
     line = Line()
-    with pytest.raises(ValueError, match=r'expected one of bag_loop, duplicated.*got'):
+    with pytest.raises(ValueError, match=r'expected one of all_nan, bag_loop, duplicated.*got'):
         line.switch(fault)
     assert line.fault == 'none'
 
