@@ -11,6 +11,7 @@ from ..errors import ArgumentError
 from ..kernels.packing import pack
 from ..kernels.specialised import make_callable
 from ..model import build_tree
+from ..model.tree import REVOLUTE
 from ..urdf import read_urdf
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
@@ -139,6 +140,13 @@ class RobotModel:
     def effort_limits(self):
         """Effort limits, shape (n,), N m or N; NaN if the URDF states none."""
         return self._tree.limits[:, 3]
+
+    @property
+    def is_continuous(self):
+        """Joints that turn without end, bool, shape (n,): revolute, with no position limit."""
+        kinds = dict(zip(self._tree.body_names, self._tree.kind, strict=True))
+        turns = [kinds[name] == REVOLUTE for name in self.joint_names]
+        return np.array(turns, dtype=bool) & np.isinf(self._tree.limits[:, :2]).all(axis=1)
 
     @property
     def neutral_position(self):

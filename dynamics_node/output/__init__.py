@@ -9,11 +9,14 @@ publish an effort that did not pass `EffortLimiter`.
 """
 
 from .channel import OutputChannel
-from .joint_state_buffer import JointStateBuffer, RejectedStateError
+from .joint_state_buffer import JointStateBuffer
 from .limiter import EffortLimiter, InvalidEffortError
+from .motion_limits import MotionLimits
+from .rejected import RejectedStateError
+from .stamps import StampTolerance
 from .state_machine import OutputState, OutputStateMachine
 
 __all__ = [
-    'EffortLimiter', 'InvalidEffortError', 'JointStateBuffer', 'OutputChannel', 'OutputState',
-    'OutputStateMachine', 'RejectedStateError',
+    'EffortLimiter', 'InvalidEffortError', 'JointStateBuffer', 'MotionLimits', 'OutputChannel',
+    'OutputState', 'OutputStateMachine', 'RejectedStateError', 'StampTolerance',
 ]

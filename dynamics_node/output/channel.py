@@ -10,6 +10,8 @@ from .state_machine import OutputState, OutputStateMachine
 # How often a stop sends its next command, and the shortest time between two looks, s.
 STOP_STEP = 0.01
 SHORTEST_LOOK = 0.001
+# An arm that needs more than its limit for so long is not held by it, s.
+LONGEST_SATURATION = 2.0
 STOP_BEHAVIORS = ('ramp_to_zero', 'hold', 'zero')
 
 
@@ -58,9 +60,10 @@ class OutputChannel:
         self.limiter = EffortLimiter(np.zeros(0), np.zeros(0), np.zeros(0))
         self.settings = settings
         self._last_time = 0.0
+        self._saturated_since = None
         self._start_from = self._stop_from = np.zeros(0)
 
-    def set_limiter(self, limits, rate_limits, scale):
+    def set_limiter(self, limits, rate_limits, scale, names=()):
         """
         Take new limits; the last command stays what it is, so nothing jumps.
 
@@ -68,10 +71,12 @@ class OutputChannel:
         ----------
         limits, rate_limits, scale : numpy.ndarray, shape (m,)
             See `EffortLimiter`.
+        names : sequence of str, optional
+            Of the m joints.
 
         """
         last = self.limiter
-        self.limiter = EffortLimiter(limits, rate_limits, scale)
+        self.limiter = EffortLimiter(limits, rate_limits, scale, names)
         if last.last.size == self.limiter.last.size:
             self.limiter.carry_on_from(last)
 
@@ -94,7 +99,40 @@ class OutputChannel:
             return False
         self._start_from = self.limiter.last
         self._last_time = now
+        self._saturated_since = None
         return True
+
+    def restart(self, now, reason):
+        """
+        Go from the last command to the model's by the start ramp, because the state is new.
+
+        Nothing happens unless commands follow the model.
+
+        Parameters
+        ----------
+        now : float
+            s.
+        reason : str
+            For people.
+
+        """
+        self._start_from = self.limiter.last
+        self.machine.restart(now, self.settings.start_ramp, reason)
+
+    def fault(self, now, reason):
+        """
+        Stop because what is measured is no healthy arm; nothing happens while output is off.
+
+        Parameters
+        ----------
+        now : float
+            s.
+        reason : str
+            For people.
+
+        """
+        if self.machine.is_on:
+            self.stop(now, reason, is_fault=True)
 
     def stop(self, now, reason, is_fault=False, within=None):
         """
@@ -148,6 +186,7 @@ class OutputChannel:
             return None
         self._last_time = now
         self.machine.advance(now)
+        self._watch_saturation(now)
         return command
 
     def tick(self, now, state_age):
@@ -207,6 +246,15 @@ class OutputChannel:
             command = self.limiter.last
         self._last_time = now
         return command
+
+    def _watch_saturation(self, now):
+        if not self.limiter.is_saturated:
+            self._saturated_since = None
+        elif self._saturated_since is None:
+            self._saturated_since = now
+        elif now - self._saturated_since > LONGEST_SATURATION:
+            self.stop(now, f'effort above its limit for {LONGEST_SATURATION:g} s: '
+                           f'{self.limiter.saturation()}', is_fault=True)
 
     def _dt(self, now):
         return now - self._last_time

@@ -5,26 +5,14 @@ import math
 
 import numpy as np
 
-from ..errors import DynamicsError
+from .motion_limits import MotionLimits
+from .rejected import RejectedStateError
+from .stamps import StampTolerance
 
 # More names than any robot has: such a message is refused before its arrays are touched.
 MAX_NAMES = 4096
-
-
-class RejectedStateError(DynamicsError):
-    """
-    A joint state message was dropped.
-
-    Attributes
-    ----------
-    kind : str
-        Short and constant, for counting.
-
-    """
-
-    def __init__(self, kind, message):
-        self.kind = kind
-        super().__init__(message)
+# One impossible position is a slip of the line; so many in a row are not.
+MAX_JUMPS = 3
 
 
 class JointStateBuffer:
@@ -40,10 +28,14 @@ class JointStateBuffer:
         Messages taken.
     rejected : collections.Counter
         Messages dropped, by kind.
+    tolerance : StampTolerance
+        How far stamps may be from the clock; may be replaced.
+    limits : MotionLimits
+        How far and fast the joints can move.
 
     """
 
-    def __init__(self, names, needed, neutral):
+    def __init__(self, names, needed, neutral, limits=None, tolerance=None):
         """
         Start with no joint measured.
 
@@ -55,24 +47,32 @@ class JointStateBuffer:
             Those that must be fresh for a state to be usable.
         neutral : numpy.ndarray, shape (n,)
             Where a joint is taken to stand until it is measured, rad or m.
+        limits : MotionLimits, optional
+            Of the n joints; none by default.
+        tolerance : StampTolerance, optional
 
         """
         self._index = {name: i for i, name in enumerate(names)}
         self._names = tuple(names)
         self._needed = [self._index[name] for name in needed]
+        self.limits = limits or MotionLimits.none(names)
+        self.tolerance = tolerance or StampTolerance(0.0)
         # Lists, not arrays: for the few joints of a robot plain numbers are several times as
         # fast as numpy, and this runs for every state before its command goes out.
         self._position = np.array(neutral, dtype=float).tolist()
         self._velocity = [math.nan] * len(names)
         self._time = [-math.inf] * len(names)
-        self._oldest = -math.inf
+        self._stamp = [0] * len(names)
+        self._oldest = self._forgotten = -math.inf
+        self._jumps = 0
         self._known_names = None
         self._pairs: list[tuple[int, int]] = []
+        self._needed_pairs: list[tuple[int, int]] = []
         self._has_all_needed = False
         self.accepted = 0
         self.rejected: Counter[str] = Counter()
 
-    def update(self, now, names, positions, velocities=()):
+    def update(self, now, names, positions, velocities=(), stamp=0, clock=0):
         """
         Take one message.
 
@@ -85,22 +85,29 @@ class JointStateBuffer:
             As many as names, rad or m.
         velocities : sequence of float
             As many as names or empty; NaN where unknown.
+        stamp : int
+            When the state was measured, ns; 0 if the message does not say it.
+        clock : int
+            Arrival on the clock that stamps belong to, ns.
 
         Raises
         ------
         RejectedStateError
-            If lengths differ, a name comes twice, or the position of a needed joint is not
-            finite. That of another joint is passed over.
+            If lengths differ, a name comes twice, the stamp is far from the clock or not newer
+            than the last one, or the position of a needed joint is not finite or further away
+            than the joint can have moved. That of another joint is passed over. The third jump
+            in a row is a fault: the last position is forgotten, so that the next message counts.
 
         """
         try:
-            self._update(now, names, positions, velocities)
+            self._update(now, names, positions, velocities, stamp, clock)
         except RejectedStateError as error:
             self.rejected[error.kind] += 1
             raise
+        self._jumps = 0
         self.accepted += 1
 
-    def _update(self, now, names, positions, velocities):
+    def _update(self, now, names, positions, velocities, stamp, clock):
         if names != self._known_names:
             self._learn(names)
         if len(positions) != len(names):
@@ -112,14 +119,60 @@ class JointStateBuffer:
         pairs, is_complete = self._pairs, self._has_all_needed
         if not all(map(math.isfinite, positions)):
             pairs, is_complete = self._finite_pairs(positions), False
-        position, velocity, time = self._position, self._velocity, self._time
+        if stamp:
+            self.tolerance.check(stamp, clock)
+            self._check_order(pairs, stamp, clock)
+        self._check_steps(now, positions, stamp)
+        position, velocity, time, stamps = self._position, self._velocity, self._time, self._stamp
         has_velocities = len(velocities) > 0
         for source, target in pairs:
             position[target] = positions[source]
             velocity[target] = velocities[source] if has_velocities else math.nan
             time[target] = now
+            stamps[target] = stamp
         self._oldest = now if is_complete else min(
             (self._time[i] for i in self._needed), default=-math.inf)
+
+    def _check_order(self, pairs, stamp, clock):
+        last = max((self._stamp[target] for _, target in pairs), default=0)
+        # A stamp that was true once and is ahead by now: the clock was set back, and what was
+        # measured before says nothing about the order any more.
+        if stamp > last or self.tolerance.is_ahead(last, clock):
+            return
+        kind = 'repeated' if stamp == last else 'going back'
+        raise RejectedStateError(
+            'old stamp', f'expected a newer stamp than the last one, got one that is {kind} by '
+            f'{(last - stamp) * 1e-9:.3f} s: does a bag loop, or do two nodes publish?')
+
+    def _check_steps(self, now, positions, stamp):
+        limits, position, time = self.limits, self._position, self._time
+        for source, target in self._needed_pairs:
+            last = self._stamp[target]
+            dt = (stamp - last) * 1e-9 if stamp and last else now - time[target]
+            if limits.is_impossible(target, position[target], positions[source], dt):
+                self._jumped(target, positions[source], dt)
+
+    def _jumped(self, joint, position, dt):
+        text = ('expected a position that the joint can have reached, got '
+                + self.limits.describe_jump(joint, self._position[joint], position, dt))
+        self._jumps += 1
+        if self._jumps < MAX_JUMPS:
+            raise RejectedStateError('jump', text)
+        self.forget()
+        raise RejectedStateError('jump', f'{text}, {MAX_JUMPS} times in a row', is_fault=True)
+
+    def forget(self):
+        """
+        Take no joint for measured any more, because the time or the arm has jumped.
+
+        `age` goes on from the last state: being told so is no sign of life.
+
+        """
+        self._forgotten = max(self._oldest, self._forgotten)
+        self._oldest = -math.inf
+        self._jumps = 0
+        self._time = [-math.inf] * len(self._names)
+        self._stamp = [0] * len(self._names)
 
     def _finite_pairs(self, positions):
         wrong = {target for source, target in self._pairs
@@ -141,8 +194,9 @@ class JointStateBuffer:
                                      + ', '.join(twice[:5]))
         self._pairs = [(i, self._index[name]) for i, name in enumerate(names)
                        if name in self._index]
-        self._has_all_needed = bool(self._needed) and set(self._needed) <= {
-            target for _, target in self._pairs}
+        needed = set(self._needed)
+        self._needed_pairs = [pair for pair in self._pairs if pair[1] in needed]
+        self._has_all_needed = bool(needed) and len(self._needed_pairs) == len(needed)
         self._known_names = list(names)
 
     @property
@@ -154,6 +208,19 @@ class JointStateBuffer:
     def velocity(self):
         """Newest velocities, NaN where unknown; shape (n,), a copy."""
         return np.array(self._velocity, dtype=float)
+
+    @property
+    def is_complete(self):
+        """Whether every needed joint has been measured, however long ago."""
+        return self._oldest > -math.inf
+
+    def runaway(self):
+        """Say which needed joints are faster than any healthy arm; '' if none is."""
+        return self.limits.runaway(self._needed, self._velocity)
+
+    def outside(self):
+        """Say which needed joints stand beyond their position limits; '' if none does."""
+        return self.limits.outside(self._needed, self._position)
 
     def age(self, now):
         """
@@ -170,7 +237,7 @@ class JointStateBuffer:
             s; infinite while a needed joint was never measured.
 
         """
-        return now - self._oldest
+        return now - max(self._oldest, self._forgotten)
 
     def stale_joints(self, now, timeout):
         """

@@ -23,12 +23,14 @@ class EffortLimiter:
     ----------
     is_saturated : bool
         Whether any joint was clamped by the last call.
-    saturations : int
-        Commands with at least one clamped joint.
+    saturations : list of int
+        Commands in which each of the m joints was clamped.
+    rate_limited : int
+        Commands with at least one joint that could not follow within its rate limit.
 
     """
 
-    def __init__(self, limits, rate_limits, scale):
+    def __init__(self, limits, rate_limits, scale, names=()):
         """
         Make a limiter whose last command is zero.
 
@@ -40,6 +42,8 @@ class EffortLimiter:
             Largest change of effort, N m/s or N/s, > 0.
         scale : numpy.ndarray, shape (m,)
             Gain on the model's effort.
+        names : sequence of str, optional
+            Of the m joints, for people.
 
         """
         # Lists, not arrays: for the few joints of a robot plain numbers are several times as
@@ -47,15 +51,19 @@ class EffortLimiter:
         self._limits = np.array(limits, dtype=float).tolist()
         self._rate_limits = np.array(rate_limits, dtype=float).tolist()
         self._scale = np.array(scale, dtype=float).tolist()
-        self._last = [0.0] * len(self._limits)
-        self._is_clamped = [False] * len(self._limits)
+        m = len(self._limits)
+        self._names = tuple(names) or tuple(f'joint {i}' for i in range(m))
+        self._last = [0.0] * m
+        self._wanted = [0.0] * m
         self.is_saturated = False
-        self.saturations = 0
+        self.saturations = [0] * m
+        self.rate_limited = 0
 
-    @property
-    def saturated(self):
-        """Which joints were clamped by the last call, bool, shape (m,), a copy."""
-        return np.array(self._is_clamped, dtype=bool)
+    def saturation(self):
+        """Return in words which joints were clamped by the last call: wanted and limit."""
+        return '; '.join(f'{name}: {wanted:.6g} limited to {limit:.6g}'
+                         for name, wanted, limit in zip(self._names, self._wanted, self._limits,
+                                                        strict=True) if abs(wanted) > limit)
 
     @property
     def last(self):
@@ -67,9 +75,10 @@ class EffortLimiter:
         self._last = [0.0] * len(self._limits)
 
     def carry_on_from(self, other):
-        """Take over last command and count from the limiter that this one replaces."""
+        """Take over last command and counts from the limiter that this one replaces."""
         self._last = other.last.tolist()
         self.saturations = other.saturations
+        self.rate_limited = other.rate_limited
 
     def command(self, effort, ramp, dt, start=0.0):
         """
@@ -102,14 +111,17 @@ class EffortLimiter:
         if effort.shape != (len(self._last),):
             raise InvalidEffortError(f'expected {len(self._last)} efforts, got shape '
                                      f'{effort.shape}')
+        self.is_saturated = False
         target = []
         for i, (value, scale, limit) in enumerate(zip(
                 effort.tolist(), self._scale, self._limits, strict=True)):
-            value *= scale
-            self._is_clamped[i] = abs(value) > limit
-            target.append(value if abs(value) <= limit else _clip(value, -limit, limit))
-        self.is_saturated = True in self._is_clamped
-        self.saturations += self.is_saturated
+            self._wanted[i] = value = value * scale
+            if not abs(value) <= limit:
+                if abs(value) > limit:
+                    self.is_saturated = True
+                    self.saturations[i] += 1
+                value = _clip(value, -limit, limit)
+            target.append(value)
         if ramp != 1.0:
             start = np.broadcast_to(start, effort.shape).tolist()
             target = [ramp * value + (1.0 - ramp) * first for value, first in zip(target, start)]
@@ -138,10 +150,13 @@ class EffortLimiter:
     def _step_to(self, target, dt):
         time = max(dt, 0.0)
         command = []
+        is_held_back = False
         for value, last, rate, limit in zip(target, self._last, self._rate_limits, self._limits,
                                             strict=True):
             step = rate * time
-            value = _clip(value, last - step, last + step)
+            if not last - step <= value <= last + step:
+                is_held_back = True
+                value = _clip(value, last - step, last + step)
             if not abs(value) <= limit:
                 # Rounding of last + step must not carry a command over its limit; a limit that
                 # was lowered below the last command is approached at the rate limit.
@@ -151,6 +166,7 @@ class EffortLimiter:
         if not all(map(math.isfinite, command)):
             raise InvalidEffortError(f'expected finite efforts, got {command}')
         self._last = command
+        self.rate_limited += is_held_back
         return np.array(command)
 
 

@@ -24,6 +24,8 @@ class OutputStateMachine:
     state : OutputState
     reason : str
         Why the state is what it is, for people.
+    fault : str
+        The first fault since the last `enable`; '' if there was none.
     on_change : callable(state, reason) or None
         Called after every change.
 
@@ -36,7 +38,7 @@ class OutputStateMachine:
         self.on_change = on_change
         self._since = 0.0
         self._duration = 0.0
-        self._fault = ''
+        self.fault = ''
 
     @property
     def name(self):
@@ -72,9 +74,26 @@ class OutputStateMachine:
         """
         if self.is_on:
             return False
-        self._fault = ''
+        self.fault = ''
         self._begin(OutputState.STARTING, now, ramp, 'enabled')
         return True
+
+    def restart(self, now, ramp, reason):
+        """
+        Begin the start ramp anew; nothing happens unless commands follow the model.
+
+        Parameters
+        ----------
+        now : float
+            Steady clock, s.
+        ramp : float
+            Duration, s.
+        reason : str
+            For people.
+
+        """
+        if self.is_driving:
+            self._begin(OutputState.STARTING, now, ramp, reason)
 
     def stop(self, now, ramp, reason, is_fault=False):
         """
@@ -92,11 +111,11 @@ class OutputStateMachine:
 
         """
         if is_fault:
-            self._fault = self._fault or reason
+            self.fault = self.fault or reason
         if self.is_driving:
             self._begin(OutputState.STOPPING, now, ramp, reason)
         elif is_fault and self.state != OutputState.STOPPING:
-            self._change(OutputState.FAULT, self._fault)
+            self._change(OutputState.FAULT, self.fault)
 
     def hasten(self, now, ramp):
         """Let a stop that is under way end no later than `ramp` seconds from now."""
@@ -137,8 +156,8 @@ class OutputStateMachine:
             return
         if self.state == OutputState.STARTING:
             self._change(OutputState.ACTIVE, 'start ramp done')
-        elif self.state == OutputState.STOPPING and self._fault:
-            self._change(OutputState.FAULT, self._fault)
+        elif self.state == OutputState.STOPPING and self.fault:
+            self._change(OutputState.FAULT, self.fault)
         elif self.state == OutputState.STOPPING:
             self._change(OutputState.READY, f'stopped: {self.reason}')
 

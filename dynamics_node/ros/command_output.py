@@ -1,4 +1,4 @@
-"""The command topic: enable service, output state, watchdog and the publisher itself."""
+"""The command topic: output state, watchdog and the publisher itself."""
 
 import math
 import time
@@ -8,9 +8,8 @@ import numpy as np
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from std_msgs.msg import Float64MultiArray
-from std_srvs.srv import SetBool
 
-from .guard import guarded, guarded_service
+from .guard import guarded
 from .messages import to_field
 from .qos import COMMAND, NO_EVENTS, OUTPUT_STATE
 from .throttle import Throttle
@@ -27,22 +26,18 @@ class CommandOutput:
     channel : OutputChannel
     commands : int
         Commands published so far.
-    was_asked : bool
-        Whether anybody has called ~/enable, with true or false.
 
     """
 
-    def __init__(self, node, parameters, get_robot, state_topic, on_change):
+    def __init__(self, node, parameters, get_robot, on_change):
         """
-        Create publishers, service and watchdog; the output is off.
+        Create publishers and watchdog; the output is off.
 
         Parameters
         ----------
         node : rclpy.node.Node
         parameters : Parameters
         get_robot : callable() -> Robot or None
-        state_topic : str
-            Resolved name of the joint state topic.
         on_change : callable()
             Called after every change of the output's state.
 
@@ -51,10 +46,8 @@ class CommandOutput:
         self._node = node
         self._parameters = parameters
         self._get_robot = get_robot
-        self._state_topic = state_topic
         self._on_change = on_change
         self.commands = 0
-        self.was_asked = False
         self._message = Float64MultiArray()
         self._saturated = Throttle(1.0)
         self._publisher = node.create_publisher(
@@ -67,7 +60,6 @@ class CommandOutput:
         self._watchdog = node.create_timer(STOP_STEP, self._tick,
                                            clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._watchdog.cancel()
-        node.create_service(SetBool, '~/enable', self._enable_requested)
 
     @property
     def topic(self):
@@ -80,7 +72,8 @@ class CommandOutput:
         if command is not None:
             self._publish(command)
             if self.channel.limiter.is_saturated and self._saturated.is_due():
-                self._warn_saturated(effort)
+                self.logger.warning(
+                    f'effort above its limit: {self.channel.limiter.saturation()}')
 
     def announce(self):
         """Publish the state that the output starts in: READY means that there is a model."""
@@ -99,11 +92,20 @@ class CommandOutput:
         rates = self._parameters['effort_rate_limits']
         scale = self._parameters['effort_scale']
         self.channel.set_limiter(limits, np.array(rates) if rates else limits / 0.1,
-                                 np.array(scale) if scale else np.ones(count))
+                                 np.array(scale) if scale else np.ones(count),
+                                 robot.joint_names)
 
     def stop(self, reason, is_fault=False, within=None):
         """Begin to stop; see `OutputChannel.stop`."""
         self.channel.stop(time.monotonic(), reason, is_fault, within)
+
+    def fault(self, reason):
+        """Stop an output that is on, because the arm must not be driven any further."""
+        self.channel.fault(time.monotonic(), reason)
+
+    def restart(self, reason):
+        """Go to the model's effort by the ramp again; see `OutputChannel.restart`."""
+        self.channel.restart(time.monotonic(), reason)
 
     def on_internal_error(self, message):
         """Stop after an exception in a callback of the torque path."""
@@ -113,76 +115,29 @@ class CommandOutput:
         """Wait until everybody who listens has the last command, at most `timeout` seconds."""
         self._publisher.wait_for_all_acked(Duration(seconds=timeout))
 
-    def enable(self):
+    def begin(self, notes=()):
         """
-        Switch the output on if nothing speaks against it.
+        Switch the output on, from zero; whether it may be has been found out before.
+
+        Parameters
+        ----------
+        notes : sequence of str
+            What there is to know besides.
 
         Returns
         -------
-        (bool, str)
-            Accepted, and the reasons why not or what to know.
+        str
+            What was done, for people.
 
         """
-        machine = self.channel.machine
-        if machine.is_driving:
-            return True, f'already enabled: {machine.name}'
-        if machine.is_on:
-            return False, 'still stopping: ask again when the state is READY'
-        reasons = self.refusals()
-        if reasons:
-            return False, 'refused: ' + '; '.join(reasons)
+        notes = list(notes)
         self.channel.enable(time.monotonic())
-        text = f'enabled: efforts go to {self.topic}'
         if self._publisher.get_subscription_count() == 0:
-            text += (', but nobody listens there: is the effort controller active and the '
-                     'parameter command_topic right?')
-            self.logger.warning(text)
-        return True, text
-
-    def refusals(self):
-        """Return every reason why the output must not be enabled now, as a list of str."""
-        robot = self._get_robot()
-        if robot is None:
-            return ['no robot description yet']
-        reasons = []
-        timeout = self._parameters['state_timeout']
-        stale = robot.buffer.stale_joints(time.monotonic(), timeout)
-        if stale:
-            reasons.append(f'no joint state within {timeout:g} s for {", ".join(stale)}')
-        elif not robot.is_mass_matrix_positive_definite():
-            reasons.append('the mass matrix is not positive definite: check the <inertial> of '
-                           'the moving links')
-        unlimited = robot.unlimited_joints(self._parameters['effort_limits'])
-        if unlimited:
-            reasons.append(f'no effort limit for {", ".join(unlimited)}: set the parameter '
-                           'effort_limits')
-        return reasons + self._graph_refusals()
-
-    def _graph_refusals(self):
-        reasons = []
-        others = self._node.count_publishers(self.topic) - 1
-        if others > 0:
-            reasons.append(f'{others} other publisher(s) on {self.topic}: two sources of effort '
-                           'would fight')
-        sources = self._node.count_publishers(self._state_topic)
-        if sources > 1 and not self._parameters['allow_several_state_publishers']:
-            reasons.append(f'{sources} publishers on {self._state_topic}: stop the others (a '
-                           'forgotten joint_state_publisher?) or set '
-                           'allow_several_state_publishers')
-        return reasons
-
-    @guarded_service
-    def _enable_requested(self, request, response):
-        self.was_asked = True
-        if request.data:
-            response.success, response.message = self.enable()
-        elif self.channel.machine.is_driving:
-            self.stop('disabled on request')
-            response.success, response.message = True, 'stopping'
-        else:
-            response.success = True
-            response.message = f'already off: {self.channel.machine.name}'
-        return response
+            notes.append('nobody listens there: is the effort controller active and the '
+                         'parameter command_topic right?')
+        if notes:
+            self.logger.warning('; '.join(notes))
+        return f'enabled: efforts go to {self.topic}' + ''.join(f', but {n}' for n in notes)
 
     @guarded
     def _tick(self):
@@ -220,13 +175,6 @@ class CommandOutput:
         else:
             self.logger.info(f'output {state.name}: {reason}')
         self._on_change()
-
-    def _warn_saturated(self, effort):
-        limiter = self.channel.limiter
-        names = self._get_robot().joint_names
-        which = '; '.join(f'{names[i]}: {effort[i]:.6g} limited to {limiter.last[i]:.6g}'
-                          for i in np.flatnonzero(limiter.saturated))
-        self.logger.warning(f'effort above its limit: {which}')
 
     def _settings(self):
         return OutputSettings(**{name: self._parameters[name] for name in (

@@ -1,4 +1,4 @@
-"""What the node says on /diagnostics: model, joint states, output."""
+"""What the node says on /diagnostics: model, joint states, output, state machine."""
 
 import math
 import time
@@ -11,7 +11,7 @@ from .qos import NO_EVENTS, RESULT
 class Diagnostics:
     """Publishes the node's health once a second and on every change of the output."""
 
-    def __init__(self, node, parameters, get_robot, output):
+    def __init__(self, node, parameters, get_robot, states, output):
         """
         Create the publisher.
 
@@ -20,29 +20,30 @@ class Diagnostics:
         node : rclpy.node.Node
         parameters : Parameters
         get_robot : callable() -> Robot or None
+        states : StateInput
         output : CommandOutput
 
         """
         self._node = node
         self._parameters = parameters
         self._get_robot = get_robot
+        self._states = states
         self._output = output
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', RESULT,
                                                 event_callbacks=NO_EVENTS)
-        self._counted = (time.monotonic(), 0)
-        self._rate = 0.0
+        self._state_rate = Rate()
+        self._command_rate = Rate()
 
     def measure(self):
-        """Update the rate of joint states; called once a second."""
-        robot = self._get_robot()
-        now, accepted = time.monotonic(), robot.buffer.accepted if robot else 0
-        before, earlier = self._counted
-        self._rate = max(accepted - earlier, 0) / max(now - before, 1e-6)
-        self._counted = (now, accepted)
+        """Update the rates; called once a second."""
+        now, robot = time.monotonic(), self._get_robot()
+        self._state_rate.measure(now, robot.buffer.accepted if robot else 0)
+        self._command_rate.measure(now, self._output.commands)
 
     def publish(self):
         """Publish the present health."""
-        message = DiagnosticArray(status=[self._model(), self._states(), self._command()])
+        message = DiagnosticArray(status=[
+            self._model(), self._joint_states(), self._command(), self._state_machine()])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 
@@ -59,33 +60,88 @@ class Diagnostics:
             'gravity [m/s^2]': ', '.join(f'{g:g}' for g in robot.model.gravity),
             **{f'warning {i + 1}': text for i, text in enumerate(warnings)}})
 
-    def _states(self):
+    def _joint_states(self):
         robot = self._get_robot()
         if robot is None:
             return self._status('joint states', DiagnosticStatus.WARN, 'no robot description',
                                 {})
         now, timeout = time.monotonic(), self._parameters['state_timeout']
-        stale = robot.buffer.stale_joints(now, timeout)
-        level = DiagnosticStatus.STALE if stale else DiagnosticStatus.OK
-        age = robot.buffer.age(now)
-        return self._status(
-            'joint states', level, f'stale: {", ".join(stale)}' if stale else 'ok', {
-                'rate [Hz]': f'{self._rate:.1f}',
-                'age [s]': 'never received' if math.isinf(age) else f'{age:.3f}',
-                'accepted': str(robot.buffer.accepted),
-                **{f'rejected: {kind}': str(count)
-                   for kind, count in sorted(robot.buffer.rejected.items())}})
+        buffer, publishers = robot.buffer, self._states.publishers
+        level, text = DiagnosticStatus.OK, 'ok'
+        if stale := buffer.stale_joints(now, timeout):
+            level, text = DiagnosticStatus.STALE, f'stale: {", ".join(stale)}'
+        elif publishers > 1 and not self._parameters['allow_several_state_publishers']:
+            level, text = DiagnosticStatus.WARN, f'{publishers} publishers, expected 1'
+        elif outside := buffer.outside():
+            level, text = DiagnosticStatus.WARN, f'beyond the position limits: {outside}'
+        age = buffer.age(now)
+        return self._status('joint states', level, text, {
+            'rate [Hz]': f'{self._state_rate.value:.1f}',
+            'age [s]': 'never received' if math.isinf(age) else f'{age:.3f}',
+            'publishers': str(publishers),
+            'accepted': str(buffer.accepted),
+            'skipped': str(self._states.skipped),
+            'rejected': str(buffer.rejected.total()),
+            **{f'rejected: {kind}': str(count)
+               for kind, count in sorted(buffer.rejected.items())}})
 
     def _command(self):
         machine, limiter = self._output.channel.machine, self._output.channel.limiter
-        level = DiagnosticStatus.ERROR if machine.name == 'FAULT' else DiagnosticStatus.OK
-        return self._status('output', level, f'{machine.name}: {machine.reason}', {
-            'state': machine.name, 'reason': machine.reason, 'topic': self._output.topic,
+        level, text = DiagnosticStatus.OK, 'on' if machine.is_on else 'off'
+        if machine.is_on and limiter.is_saturated:
+            level, text = DiagnosticStatus.WARN, f'above the limit: {limiter.saturation()}'
+        robot = self._get_robot()
+        names = robot.joint_names if robot else ()
+        return self._status('output', level, text, {
+            'topic': self._output.topic,
+            'command rate [Hz]': f'{self._command_rate.value:.1f}',
             'commands': str(self._output.commands),
-            'saturated commands': str(limiter.saturations)})
+            'rate limited commands': str(limiter.rate_limited),
+            **{f'limit hit: {name}': str(count) for name, count in zip(
+                names, limiter.saturations, strict=False)}})
+
+    def _state_machine(self):
+        machine = self._output.channel.machine
+        level = {'FAULT': DiagnosticStatus.ERROR, 'STOPPING': DiagnosticStatus.WARN}.get(
+            machine.name, DiagnosticStatus.OK)
+        return self._status('state machine', level, f'{machine.name}: {machine.reason}', {
+            'state': machine.name, 'reason': machine.reason, 'latched fault': machine.fault})
 
     def _status(self, part, level, message, values):
         return DiagnosticStatus(
             name=f'{self._node.get_name()}: {part}', level=level, message=message,
             hardware_id=self._node.get_fully_qualified_name(),
             values=[KeyValue(key=key, value=value) for key, value in values.items()])
+
+
+class Rate:
+    """
+    How often something happens, from a counter that is read now and then.
+
+    Attributes
+    ----------
+    value : float
+        Hz, between the last two readings.
+
+    """
+
+    def __init__(self):
+        """Begin at zero."""
+        self.value = 0.0
+        self._last = (0.0, 0)
+
+    def measure(self, now, count):
+        """
+        Take a reading.
+
+        Parameters
+        ----------
+        now : float
+            s.
+        count : int
+            A smaller one than before begins anew.
+
+        """
+        before, earlier = self._last
+        self.value = max(count - earlier, 0) / max(now - before, 1e-6)
+        self._last = (now, count)

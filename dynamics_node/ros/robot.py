@@ -4,7 +4,7 @@ import numpy as np
 
 from ..dynamics import JointSelection
 from ..errors import DynamicsError
-from ..output import JointStateBuffer
+from ..output import JointStateBuffer, MotionLimits
 
 
 class StateUnavailableError(DynamicsError):
@@ -47,8 +47,10 @@ class Robot:
         """
         self.model = model
         self.selection = JointSelection(model, joints)
-        self.buffer = JointStateBuffer(model.joint_names, self.selection.names,
-                                       model.neutral_position)
+        self.buffer = JointStateBuffer(
+            model.joint_names, self.selection.names, model.neutral_position,
+            MotionLimits(model.joint_names, model.velocity_limits, model.position_limits,
+                         model.is_continuous))
         self.has_all_in_order = self.selection.names == tuple(model.joint_names)
 
     @property

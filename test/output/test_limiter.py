@@ -40,14 +40,23 @@ def test_an_effort_within_everything_passes_unchanged():
 def test_scale_comes_before_the_clamp_and_the_ramp_after_it():
     unit = limiter((4.0, 1.0))
     np.testing.assert_array_equal(unit.command([5.0, 1.0], 0.5, 1.0), [5.0, 0.5])
-    assert unit.saturated.tolist() == [True, False]
-    assert unit.saturations == 1
+    assert unit.is_saturated
+    assert unit.saturations == [1, 0]
+    assert unit.saturation() == 'joint 0: 20 limited to 10'
+    unit.command([1.0, 1.0], 1.0, 1.0)
+    assert not unit.is_saturated
+    assert unit.saturations == [1, 0]
+    assert unit.saturation() == ''
 
 
 def test_a_step_is_limited_by_the_time_since_the_last_command():
     unit = limiter()
     np.testing.assert_allclose(unit.command([9.0, 2.0], 1.0, 0.01), [1.0, 0.05])
+    assert unit.rate_limited == 1
     np.testing.assert_allclose(unit.command([9.0, 2.0], 1.0, 0.01), [2.0, 0.1])
+    assert unit.rate_limited == 2
+    unit.command([2.0, 0.1], 1.0, 0.01)
+    assert unit.rate_limited == 2
 
 
 def test_infinity_is_refused_although_a_clamp_would_swallow_it_only_if_not_finite_after_all():
