@@ -104,7 +104,7 @@ def assert_it_is_still_held(rig, since):
 HARMLESS = {
     'permuted': None, 'parts': None, 'no_stamp': None, 'unknown_names/7': None, 'flood': None,
     'duplicated': None, 'frozen/7': 'old stamp', 'nan/7': 'not finite', 'length/7': 'length',
-    'name_twice/7': 'name twice', 'jump/50': 'jump', 'old_stamp/7': 'stamp',
+    'name_twice/7': 'name twice', 'jump/20': 'jump', 'old_stamp/7': 'stamp',
     'future_stamp/7': 'stamp', 'many_names/20': 'too many names', 'garbage/7': 'unreadable',
 }
 
@@ -322,10 +322,9 @@ def test_a_million_names_are_not_even_read(simulated):
     rig, client = simulated, simulated.client
     client.set_clock_offset(-1000.0)
     rig.float()
-    client.until_diagnosed()
-    before, begin = client.number('joint states', 'rejected: too many names'), client.now
+    begin = client.now
     client.set_fault('million_names/200')
-    rig.until(lambda: client.number('joint states', 'rejected: too many names') > before)
+    rig.until(lambda: client.number('joint states', 'rejected: too many names') > 0)
     client.set_fault('none')
     assert_it_is_still_held(rig, begin)
 

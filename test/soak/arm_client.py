@@ -9,7 +9,7 @@ from dynamics_node.ros.lean_executor import LeanExecutor
 import numpy as np
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
-from rclpy.qos import qos_profile_sensor_data, QoSProfile
+from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool, Trigger
@@ -20,8 +20,8 @@ from .command_judge import CommandJudge
 REMEMBERED = 20_000  # states and commands: 40 s of each
 # Whatever was written so long ago has arrived, s.
 SETTLED = 1.0
-# Every service here answers within a part of it, s.
-ANSWER = 3.0
+# Then a service is asked again, s.
+ANSWER = 1.0
 
 
 class ArmClient(Client):
@@ -42,6 +42,9 @@ class ArmClient(Client):
     diagnostics : dict of dict
         By part ('joint states', ...) and key.
     judge : CommandJudge
+    on_command, on_output, on_diagnostics : callable
+        Called with the time of every command, with time and name of every state of the output,
+        and with all diagnostics.
 
     """
 
@@ -68,6 +71,7 @@ class ArmClient(Client):
         self.judge = CommandJudge(limits, rate_limits)
         self.truth, self.commands = deque(maxlen=REMEMBERED), deque(maxlen=REMEMBERED)
         self.output_times, self.diagnostics, self.diagnostics_received = [], {}, 0
+        self.on_command = self.on_output = self.on_diagnostics = lambda *news: None
         self._names, self._rows = names, None
         many = QoSProfile(depth=1000)
         self.node.create_subscription(JointState, 'robot/joint_states', self._on_truth, many)
@@ -76,7 +80,7 @@ class ArmClient(Client):
         self.node.create_subscription(OutputState, 'dynamics_node/state', self._on_output,
                                       QoSProfile(depth=100, durability=LATCHED.durability))
         self.node.create_subscription(DiagnosticArray, '/diagnostics', self._on_diagnostics,
-                                      qos_profile_sensor_data)
+                                      many)
 
     def call(self, kind, name, request=None, action=None, timeout=PATIENCE):
         """Call a service; again if there is no answer: whoever has just died takes requests."""
@@ -101,6 +105,17 @@ class ArmClient(Client):
     def output(self):
         """The newest state of the output, a word; '' before there is one."""
         return self.outputs[-1].name if self.outputs else ''
+
+    @property
+    def is_held(self):
+        """Whether the effort of the arm is that of the newest command."""
+        return bool(self.commands) and np.allclose(self.truth[-1][3], self.commands[-1][1],
+                                                   rtol=1e-3, atol=1e-3)
+
+    @property
+    def speed(self):
+        """Largest newest speed of any joint, rad/s or m/s."""
+        return np.abs(self.truth[-1][2]).max()
 
     def settle(self, everything=False):
         """Judge what has certainly arrived, or everything that is there."""
@@ -177,15 +192,18 @@ class ArmClient(Client):
         written, values = self.time_of(info['source_timestamp']), message.data.tolist()
         self.commands.append((written, values))
         self.judge.command(written, values, info['publication_sequence_number'])
+        self.on_command(written)
 
     def _on_output(self, message, info):
         written = self.time_of(info['source_timestamp'])
         self.judge.state(written, message.name)
         self.outputs.append(message)
         self.output_times.append(written)
+        self.on_output(written, message.name)
 
     def _on_diagnostics(self, message):
         self.diagnostics_received += 1
         self.diagnostics = {status.name.split(': ', 1)[1]:
                             {item.key: item.value for item in status.values}
                             for status in message.status if status.name.startswith('dynamics_')}
+        self.on_diagnostics(self.diagnostics)

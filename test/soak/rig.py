@@ -17,6 +17,8 @@ START_UP = 40.0
 FULL_RATE = 0.1
 # An arm that stands so near its start pose need not be brought back, rad.
 NEAR = 0.3
+# An arm that floats and is slower is at rest, rad/s.
+AT_REST = 0.01
 COMMAND_TOPIC = '/forward_effort_controller/commands'
 
 
@@ -111,7 +113,7 @@ class Rig:
     def catch(self):
         """Engage the brakes, and bring the arm back if it has sunk far."""
         self.until(functools.partial(self.client.set_brakes, True))
-        if np.abs(self.client.truth[-1][1] - self.start_pose).max() > NEAR:
+        if self.distance > NEAR:
             self.until(self.client.reset)
             self.until(functools.partial(self.client.set_brakes, True))
 
@@ -125,11 +127,20 @@ class Rig:
         self.catch()
         self.enable()
         self.until(lambda: self.client.output == 'ACTIVE')
-        # Released before its efforts have arrived, it would begin to fall.
-        last = self.client.now
-        self.until(lambda: self.client.truth[-1][0] > last)
+        self.release()
+
+    def release(self):
+        """Release the brakes of an arm that is held."""
+        # Before its efforts have arrived, it would begin to fall.
+        self.until(lambda: self.client.is_held)
         assert self.client.set_brakes(False)
-        self.during(0.05)
+        self.during(0.03)
+        self.until(lambda: self.client.speed < AT_REST)
+
+    @property
+    def distance(self):
+        """How far the arm stands from its start pose, the largest of any joint, rad or m."""
+        return np.abs(self.client.truth[-1][1] - self.start_pose).max()
 
     def enable(self, timeout=30.0):
         """Enable the output, asking again until it is accepted: others need time to be gone."""
