@@ -7,7 +7,8 @@ from dynamics_node.kernels.specialised import is_supported
 import pytest
 
 ROOT = Path(__file__).parents[1]
-DOCUMENTS = [ROOT / name for name in ('README.md', 'ARCHITECTURE.md', 'CONTRIBUTING.md')]
+DOCUMENTS = [ROOT / name for name in ('README.md', 'ARCHITECTURE.md', 'CONTRIBUTING.md',
+                                  'SECURITY.md')]
 DOCUMENTS += sorted((ROOT / 'docs').glob('*.md'))
 
 

@@ -9,6 +9,7 @@ publish an effort that did not pass `EffortLimiter`.
 """
 
 from .channel import OutputChannel
+from .intake import take_state
 from .joint_state_buffer import JointStateBuffer
 from .limiter import EffortLimiter, InvalidEffortError
 from .motion_limits import MotionLimits
@@ -18,5 +19,5 @@ from .state_machine import OutputState, OutputStateMachine
 
 __all__ = [
     'EffortLimiter', 'InvalidEffortError', 'JointStateBuffer', 'MotionLimits', 'OutputChannel',
-    'OutputState', 'OutputStateMachine', 'RejectedStateError', 'StampTolerance',
+    'OutputState', 'OutputStateMachine', 'RejectedStateError', 'StampTolerance', 'take_state',
 ]

@@ -65,12 +65,43 @@ class JointStateBuffer:
         self._stamp = [0] * len(names)
         self._oldest = self._forgotten = -math.inf
         self._jumps = 0
+        self._clock = 0
         self._known_names = None
         self._pairs: list[tuple[int, int]] = []
         self._needed_pairs: list[tuple[int, int]] = []
         self._has_all_needed = False
         self.accepted = 0
         self.rejected: Counter[str] = Counter()
+
+    def follow_clock(self, clock):
+        """
+        Notice that the clock of the stamps has gone back; what was measured before is forgotten.
+
+        Parameters
+        ----------
+        clock : int
+            That clock now, ns.
+
+        Returns
+        -------
+        float
+            By how much it has gone back, s; 0.0 for less than stamps may be wrong anyway.
+
+        Raises
+        ------
+        RejectedStateError
+            Kind 'no clock': it stands at zero, so it is simulated time that nobody publishes.
+
+        """
+        if not clock:
+            self.rejected['no clock'] += 1
+            raise RejectedStateError('no clock', 'use_sim_time is true, but nothing has come on '
+                                     '/clock yet: start the simulation, or set it to false')
+        back, self._clock = (self._clock - clock) * 1e-9, clock
+        if back <= self.tolerance.seconds:
+            return 0.0
+        self.forget()
+        return back
 
     def update(self, now, names, positions, velocities=(), stamp=0, clock=0):
         """
@@ -186,12 +217,12 @@ class JointStateBuffer:
     def _learn(self, names):
         # The mapping by name; kept until a message names other joints or another order.
         if len(names) > MAX_NAMES:
-            raise RejectedStateError('too many names', f'expected at most {MAX_NAMES} names, '
-                                     f'got {len(names)}')
+            raise too_many_names(len(names))
         if len(set(names)) != len(names):
             twice = sorted(name for name, count in Counter(names).items() if count > 1)
+            # Anybody may have written them: short, and without what a terminal would obey.
             raise RejectedStateError('name twice', 'expected each joint once, got twice: '
-                                     + ', '.join(twice[:5]))
+                                     + ', '.join(repr(name[:40]) for name in twice[:5]))
         self._pairs = [(i, self._index[name]) for i, name in enumerate(names)
                        if name in self._index]
         needed = set(self._needed)
@@ -256,3 +287,8 @@ class JointStateBuffer:
 
         """
         return [self._names[i] for i in self._needed if now - self._time[i] > timeout]
+
+
+def too_many_names(count):
+    """Return the error about a message with more names than any robot has."""
+    return RejectedStateError('too many names', f'expected at most {MAX_NAMES} names, got {count}')

@@ -103,10 +103,6 @@ class CommandOutput:
         """Stop an output that is on, because the arm must not be driven any further."""
         self.channel.fault(time.monotonic(), reason)
 
-    def restart(self, reason):
-        """Go to the model's effort by the ramp again; see `OutputChannel.restart`."""
-        self.channel.restart(time.monotonic(), reason)
-
     def on_internal_error(self, message):
         """Stop after an exception in a callback of the torque path."""
         self.stop(message, is_fault=True)

@@ -127,10 +127,11 @@ class _Question:
         if joints.type == ParameterType.PARAMETER_STRING_ARRAY:
             theirs = list(joints.string_array_value)
             if theirs != joint_names:
-                what = 'order' if sorted(theirs) == sorted(joint_names) else 'joints'
-                reasons.append(f'the {what} of {self.name} is not that of this node: its '
-                               f'parameter joints is [{", ".join(theirs)}], here it is '
-                               f'[{", ".join(joint_names)}]; make them equal')
+                has_same = sorted(theirs) == sorted(joint_names)
+                what = 'order of the joints' if has_same else 'number or names of the joints'
+                reasons.append(f'{self.name} has another {what}: its parameter joints is '
+                               f'[{", ".join(theirs)}], here it is [{", ".join(joint_names)}]; '
+                               'make them equal')
         interface = self._value('interface_name')
         if (interface.type == ParameterType.PARAMETER_STRING
                 and interface.string_value not in ('', 'effort')):

@@ -7,6 +7,8 @@ import sys
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
+from ..output.joint_state_buffer import MAX_NAMES, too_many_names
+
 # The representation that every ROS 2 middleware sends: plain CDR, little endian, no options.
 # Only that is read here, and only where the machine stores numbers in the same way.
 _REPRESENTATION = b'\x00\x01\x00\x00' if sys.byteorder == 'little' else b''
@@ -48,6 +50,8 @@ class JointStateReader:
 
         Raises
         ------
+        RejectedStateError
+            If it says that it has more names than any robot: before anything is made of them.
         Exception
             What rclpy raises if it is no joint state.
 
@@ -63,6 +67,8 @@ class JointStateReader:
         return self._learn(data)
 
     def _learn(self, data):
+        if data[:_ORIGIN] == _REPRESENTATION:
+            _refuse_too_many(data)
         message = deserialize_message(data, JointState)
         message.effort = []
         self._names = None
@@ -70,6 +76,15 @@ class JointStateReader:
             self._message, self._end = message, _end_of_names(data)
             self._names = data[_FRAME:self._end]
         return message
+
+
+def _refuse_too_many(data):
+    # A million names would keep rclpy, and so the arm, waiting for a second.
+    at = _end_of_text(data, _FRAME) if len(data) >= _FRAME + _COUNT.size else len(data)
+    if at + _COUNT.size <= len(data):
+        count, = _COUNT.unpack_from(data, at)
+        if count > MAX_NAMES:
+            raise too_many_names(count)
 
 
 def _end_of_names(data):

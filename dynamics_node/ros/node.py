@@ -60,9 +60,10 @@ class DynamicsNode(Node):
         self._start = time.monotonic()
         self.parameters = Parameters(self)
         self._results = Results(self, self.parameters)
-        self.states = StateInput(self, self.parameters, self._get_robot, self, raw_states)
         self.output = CommandOutput(self, self.parameters, self._get_robot,
                                     self._output_changed)
+        self.states = StateInput(self, self.parameters, self._get_robot, self.output.channel,
+                                 self, raw_states)
         self._rivals = Rivals(self, self.output.topic, self.states,
                               self.parameters['allow_several_state_publishers'])
         self._enabling = Enabling(self, self.parameters, self._get_robot, self.output,
@@ -159,14 +160,6 @@ class DynamicsNode(Node):
             self._has_states = True
             self.logger.info('joint states arrive: publishing gravity torque')
         self._results.publish(robot, stamp, effort)
-
-    def on_bad_motion(self, reason):
-        """Stop the output: what is measured is no healthy arm."""
-        self.output.fault(reason)
-
-    def on_clock_back(self, reason):
-        """Begin again from the last command."""
-        self.output.restart(reason)
 
     @logged
     def _every_second(self):

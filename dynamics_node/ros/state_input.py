@@ -1,4 +1,4 @@
-"""The joint states: from the topic into the buffer, and what they say about arm and clock."""
+"""The joint states: from the topic into the buffer."""
 
 import time
 
@@ -9,8 +9,7 @@ from .guard import guarded
 from .joint_state_reader import JointStateReader
 from .qos import joint_states, NO_SUBSCRIPTION_EVENTS
 from .throttle import Throttle
-from ..output import RejectedStateError
-from ..output.motion_limits import VELOCITY_MARGIN
+from ..output import RejectedStateError, take_state
 
 # The shortest time between two warnings about the same thing, s.
 WARN_EVERY = 1.0
@@ -18,7 +17,7 @@ WARN_EVERY = 1.0
 
 class StateInput:
     """
-    Takes every joint state that is fit for use, and says when the arm must not be driven.
+    Subscribes to the joint states and hands on every one that is fit for use.
 
     Attributes
     ----------
@@ -31,7 +30,7 @@ class StateInput:
 
     """
 
-    def __init__(self, node, parameters, get_robot, listener, raw):
+    def __init__(self, node, parameters, get_robot, channel, listener, raw):
         """
         Subscribe.
 
@@ -40,9 +39,11 @@ class StateInput:
         node : rclpy.node.Node
         parameters : Parameters
         get_robot : callable() -> Robot or None
+        channel : OutputChannel
+            Stopped if the states say that the arm must not be driven.
         listener : object
-            With `on_state(robot, now, stamp)` for every usable state, `on_bad_motion(reason)`,
-            `on_clock_back(reason)` and `on_internal_error(message)`.
+            With `on_state(robot, now, stamp)` for every usable state, and
+            `on_internal_error(message)`.
         raw : bool
             Read the states by `JointStateReader` instead of rclpy.
 
@@ -50,12 +51,11 @@ class StateInput:
         self.logger = node.get_logger()
         self._node = node
         self._clock = node.get_clock()
-        self._parameters = parameters
         self._get_robot = get_robot
+        self._channel = channel
         self._listener = listener
         self.on_internal_error = listener.on_internal_error
         self._reader = JointStateReader()
-        self._newest = 0
         self._sequence_number = 0
         self._has_unstamped = False
         self._warnings: dict[str, Throttle] = {}
@@ -82,8 +82,11 @@ class StateInput:
         try:
             message = self._reader.read(data)
         except Exception as error:  # no joint state: several of rclpy's exceptions say so
+            if not isinstance(error, RejectedStateError):
+                error = RejectedStateError('unreadable', str(error))
             if robot is not None:
-                self._reject(robot, RejectedStateError('unreadable', str(error)))
+                robot.buffer.rejected[error.kind] += 1
+            self._warn(error)
             return
         self._take(robot, message, info)
 
@@ -99,47 +102,24 @@ class StateInput:
         clock = self._clock.now().nanoseconds if self._clock.ros_time_is_active else time.time_ns()
         header_stamp = message.header.stamp
         stamp = header_stamp.sec * 1_000_000_000 + header_stamp.nanosec
-        buffer = robot.buffer
         try:
-            self._check_clock(robot, clock)
-            buffer.update(now, message.name, message.position, message.velocity, stamp, clock)
+            is_usable = take_state(robot.buffer, self._channel, now, message.name,
+                                   message.position, message.velocity, stamp, clock)
         except RejectedStateError as error:
-            self._reject(robot, error)
+            self._warn(error)
             return
-        fast = buffer.runaway()
-        if fast:
-            self._listener.on_bad_motion(f'runaway: {fast}, more than {VELOCITY_MARGIN:g} times '
-                                         'the velocity limit')
-        if not buffer.is_complete or buffer.age(now) > self._parameters['state_timeout']:
+        if not is_usable:
             return
-        outside = buffer.outside()
+        outside = robot.buffer.outside()
         if outside and self._is_due('outside'):
             self.logger.warning(f'beyond the position limits: {outside}')
         if not stamp:
             header_stamp = self._arrival_time()
         self._listener.on_state(robot, now, header_stamp)
 
-    def _check_clock(self, robot, clock):
-        # Of simulated time that was set back, and of a system clock that was.
-        if not clock:
-            raise RejectedStateError('no clock', 'use_sim_time is true, but there was nothing on '
-                                     '/clock yet: start the simulation, or set it to false')
-        back = (self._newest - clock) * 1e-9
-        self._newest = clock
-        if back > robot.buffer.tolerance.seconds:
-            robot.buffer.forget()
-            reason = f'the clock went back by {back:.3f} s: measured states dropped'
-            self.logger.warning(reason)
-            self._listener.on_clock_back(reason)
-
-    def _reject(self, robot, error):
-        # The buffer has counted what it has refused itself.
-        if error.kind in ('unreadable', 'no clock'):
-            robot.buffer.rejected[error.kind] += 1
+    def _warn(self, error):
         if self._is_due(error.kind):
             self.logger.warning(f'joint state dropped: {error}')
-        if error.is_fault:
-            self._listener.on_bad_motion(str(error))
 
     def _is_due(self, kind):
         return self._warnings.setdefault(kind, Throttle(WARN_EVERY)).is_due()

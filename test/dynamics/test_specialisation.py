@@ -72,6 +72,18 @@ def test_it_can_be_asked_for_without_waiting():
     assert model.specialise(wait=True)
 
 
+def test_while_enough_others_are_being_made_it_is_asked_for_again(monkeypatch):
+    monkeypatch.setattr(background, '_MOST_AT_ONCE', 0)
+    model = RobotModel.from_urdf(PENDULUM)
+    model.specialise(wait=False)
+    assert model._evaluation.specialisation._process is None
+    monkeypatch.setattr(background, '_MOST_AT_ONCE', 1)
+    end = time.monotonic() + 60
+    while not model.is_specialised and time.monotonic() < end:
+        model.gravity_torque([0.3])
+    assert model.is_specialised
+
+
 def test_it_can_be_switched_off(monkeypatch):
     monkeypatch.setenv('DYNAMICS_NODE_SPECIALISE', '0')
     model = RobotModel.from_urdf(PENDULUM)

@@ -3,7 +3,12 @@
 import math
 
 from dynamics_node.output import OutputChannel
-from dynamics_node.output.channel import OutputSettings, SHORTEST_LOOK, STOP_STEP
+from dynamics_node.output.channel import (
+    LONGEST_SATURATION,
+    OutputSettings,
+    SHORTEST_LOOK,
+    STOP_STEP,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
@@ -208,3 +213,48 @@ def test_the_next_look_is_when_the_newest_state_becomes_stale_or_a_stop_goes_on(
     assert unit.next_look(math.inf) == SHORTEST_LOOK
     unit.stop(1.1, 'on request')
     assert unit.next_look(0.03) == STOP_STEP
+
+
+def test_a_restart_goes_from_the_last_command_to_the_new_torque_by_the_start_ramp():
+    unit = active()
+    unit.restart(1.0, 'the clock went back')
+    assert unit.machine.name == 'STARTING'
+    np.testing.assert_allclose(unit.on_effort(1.0, -TORQUE), TORQUE)
+    np.testing.assert_allclose(unit.on_effort(1.25, -TORQUE), 0.0 * TORQUE, atol=1e-12)
+    np.testing.assert_allclose(unit.on_effort(1.5, -TORQUE), -TORQUE)
+    assert unit.machine.name == 'ACTIVE'
+
+
+def test_a_fault_of_the_arm_stops_an_output_that_is_on_and_only_that():
+    unit = channel()
+    unit.fault(0.0, 'runaway')
+    assert unit.machine.name == 'READY'
+    unit = active()
+    unit.fault(1.0, 'runaway')
+    assert unit.machine.name == 'STOPPING'
+    stopped(unit, 1.0)
+    assert (unit.machine.name, unit.machine.reason) == ('FAULT', 'runaway')
+    # While it stops on request, a fault latches too.
+    unit = active()
+    unit.stop(1.0, 'disabled on request')
+    unit.fault(1.1, 'runaway')
+    stopped(unit, 1.1)
+    assert unit.machine.name == 'FAULT'
+
+
+def test_an_effort_above_its_limit_for_too_long_is_a_fault_and_a_moment_is_not():
+    too_much = np.array([40.0, 0.0])
+
+    def run(unit, start, seconds, effort):
+        for now in start + np.arange(0.0, seconds, 0.01):
+            unit.on_effort(now, effort)
+        return start + seconds
+    unit = active()
+    now = run(unit, 1.01, LONGEST_SATURATION - 0.1, too_much)
+    now = run(unit, now, 0.05, TORQUE)
+    now = run(unit, now, LONGEST_SATURATION - 0.1, too_much)
+    assert unit.machine.name == 'ACTIVE'
+    run(unit, now, 0.2, too_much)
+    assert unit.machine.name == 'STOPPING'
+    assert unit.machine.reason == 'effort above its limit for 2 s: joint 0: 40 limited to 10'
+    assert unit.machine.fault

@@ -2,14 +2,20 @@
 
 import math
 
-from dynamics_node.output import JointStateBuffer, RejectedStateError
-from dynamics_node.output.joint_state_buffer import MAX_NAMES
+from dynamics_node.output import (
+    JointStateBuffer,
+    MotionLimits,
+    RejectedStateError,
+    StampTolerance,
+)
+from dynamics_node.output.joint_state_buffer import MAX_JUMPS, MAX_NAMES
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
 
 NAMES = ('a', 'b', 'c')
+SECOND = 1_000_000_000
 
 
 def buffer(needed=NAMES):
@@ -56,7 +62,7 @@ def test_a_joint_never_measured_stands_at_its_neutral_position():
     (['a', 'b'], [1.0], [], 'length', 'expected 2 positions for 2 names, got 1'),
     (['a'], [], [], 'length', 'expected 1 positions for 1 names, got 0'),
     (['a'], [1.0], [1.0, 2.0], 'length', 'expected 1 velocities or none, got 2'),
-    (['a', 'a'], [1.0, 2.0], [], 'name twice', 'got twice: a'),
+    (['a', 'a'], [1.0, 2.0], [], 'name twice', "got twice: 'a'"),
     (['b', 'a'], [1.0, math.nan], [], 'not finite', 'NaN or infinity for a'),
     (['b', 'a'], [-math.inf, 1.0], [], 'not finite', 'for b'),
     ([str(i) for i in range(MAX_NAMES + 1)], [], [], 'too many names', 'at most 4096'),
@@ -71,6 +77,14 @@ def test_a_bad_message_is_dropped_whole_and_counted(names, position, velocity, k
     assert unit.age(1.0) == 1.0
     np.testing.assert_array_equal(unit.position, [1, 2, 3])
     np.testing.assert_array_equal(unit.velocity, [4, 5, 6])
+
+
+def test_names_in_the_message_are_short_and_harmless_to_a_terminal():
+    name = '\x1b]0;title\x07\n' + 'x' * 10_000
+    with pytest.raises(RejectedStateError) as caught:
+        buffer().update(0.0, [name, name], [1.0, 2.0])
+    assert len(str(caught.value)) < 200
+    assert str(caught.value).isprintable()
 
 
 def test_a_bad_message_does_not_spoil_the_next_one():
@@ -96,3 +110,143 @@ def test_nan_of_a_joint_that_is_not_needed_is_passed_over():
     np.testing.assert_array_equal(unit.position, [1.0, 0.2, 0.3])
     np.testing.assert_array_equal(unit.velocity, [6.0, math.nan, math.nan])
     assert unit.age(0.0) == 0.0
+
+
+def moving(needed=NAMES):
+    """Return a buffer of joints that make 1 rad/s, where a state may be 0.1 s old."""
+    return JointStateBuffer(NAMES, needed, np.zeros(3), MotionLimits(
+        NAMES, np.ones(3), np.tile([-3.0, 3.0], (3, 1)), np.zeros(3, dtype=bool)),
+        StampTolerance(0.1))
+
+
+def stamped(unit, time, names=NAMES, position=(0.0, 0.0, 0.0), late=0.0):
+    """Give a buffer a message that arrives `late` seconds after its stamp."""
+    unit.update(time, list(names), list(position), (), round((100 + time - late) * SECOND),
+                round((100 + time) * SECOND))
+
+
+@pytest.mark.parametrize('late, kind', [(0.2, 'stamp'), (-0.2, 'stamp'), (0.09, None)])
+def test_a_stamp_far_from_the_clock_makes_nothing_fresh(late, kind):
+    unit = moving()
+    stamped(unit, 0.0)
+    if kind is None:
+        stamped(unit, 1.0, late=late)
+        assert unit.age(1.0) == 0.0
+        return
+    with pytest.raises(RejectedStateError, match='synchronise the clocks'):
+        stamped(unit, 1.0, late=late)
+    assert unit.age(1.0) == 1.0
+    assert unit.rejected == {kind: 1}
+
+
+@pytest.mark.parametrize('late, text', [(0.05, 'repeated'), (0.06, 'going back by 0.010 s')])
+def test_a_stamp_that_is_not_newer_makes_nothing_fresh(late, text):
+    unit = moving()
+    stamped(unit, 0.0)
+    with pytest.raises(RejectedStateError, match=text):
+        stamped(unit, 0.05, position=(0.01, 0.0, 0.0), late=late)
+    assert unit.rejected == {'old stamp': 1}
+    assert unit.age(0.05) == 0.05
+    assert unit.position[0] == 0.0
+
+
+def test_the_order_of_stamps_holds_for_each_joint_by_itself():
+    # Two broadcasters whose messages overtake each other.
+    unit = moving()
+    stamped(unit, 0.00, 'ab', (0.0, 0.0))
+    stamped(unit, 0.01, 'c', (0.0,), late=0.02)
+    stamped(unit, 0.02, 'ab', (0.0, 0.0))
+    assert unit.rejected == {}
+    assert unit.is_complete
+
+
+def test_stamps_from_before_the_clock_was_set_back_do_not_shut_the_door():
+    unit = moving()
+    stamped(unit, 50.0)
+    unit.update(50.1, list(NAMES), [0.0, 0.0, 0.0], (), 7 * SECOND, 7 * SECOND)
+    assert unit.age(50.1) == 0.0
+
+
+def test_without_stamps_the_arrival_counts():
+    unit = moving()
+    for time in (0.0, 0.0, 0.1):
+        unit.update(time, list(NAMES), [0.0, 0.0, 0.0])
+    assert unit.accepted == 3
+
+
+def test_an_impossible_step_is_dropped_and_the_next_good_one_counts():
+    unit = moving()
+    stamped(unit, 0.0)
+    with pytest.raises(RejectedStateError, match=r'got b from 0 to 0\.5 within 0\.100 s, at '
+                                                 'a velocity limit of 1') as caught:
+        stamped(unit, 0.1, position=(0.0, 0.5, 0.0))
+    assert not caught.value.is_fault
+    stamped(unit, 0.2, position=(0.0, 0.1, 0.0))
+    np.testing.assert_array_equal(unit.position, [0.0, 0.1, 0.0])
+    assert unit.rejected == {'jump': 1}
+
+
+def test_the_time_of_a_step_is_that_between_the_stamps():
+    # The messages come 0.001 s apart, the measurements were 0.09 s apart.
+    unit = moving()
+    stamped(unit, 0.0)
+    stamped(unit, 0.1, late=0.09)
+    stamped(unit, 0.101, position=(0.15, 0.0, 0.0), late=0.001)
+    assert unit.rejected == {}
+
+
+def test_several_impossible_steps_in_a_row_are_a_fault_and_then_the_new_truth():
+    unit = moving()
+    stamped(unit, 0.0)
+    there = (2.0, 0.0, 0.0)
+    for i in range(1, MAX_JUMPS):
+        with pytest.raises(RejectedStateError) as caught:
+            stamped(unit, 0.01 * i, position=there)
+        assert not caught.value.is_fault
+    with pytest.raises(RejectedStateError, match='3 times in a row') as caught:
+        stamped(unit, 0.01 * MAX_JUMPS, position=there)
+    assert caught.value.is_fault
+    assert not unit.is_complete
+    stamped(unit, 0.04, position=there)
+    np.testing.assert_array_equal(unit.position, there)
+    assert unit.is_complete
+
+
+def test_good_steps_in_between_begin_the_count_anew():
+    unit = moving()
+    stamped(unit, 0.0)
+    for i in range(10):
+        with pytest.raises(RejectedStateError) as caught:
+            stamped(unit, 0.02 * i + 0.01, position=(2.5, 0.0, 0.0))
+        assert not caught.value.is_fault
+        stamped(unit, 0.02 * i + 0.02)
+
+
+def test_joints_that_are_not_needed_may_jump():
+    unit = moving(needed=('a',))
+    stamped(unit, 0.0)
+    stamped(unit, 0.01, position=(0.0, 2.0, 0.0))
+    assert unit.position[1] == 2.0
+
+
+def test_forgetting_asks_for_every_joint_again_and_is_no_sign_of_life():
+    unit = moving()
+    stamped(unit, 0.0)
+    unit.forget()
+    assert not unit.is_complete
+    assert unit.age(0.5) == 0.5
+    assert unit.stale_joints(0.0, 1e9) == list(NAMES)
+    stamped(unit, 0.6, 'ab', (0.0, 0.0))
+    unit.forget()
+    assert unit.age(0.7) == 0.7
+    stamped(unit, 0.8, 'ab', (3.0, 0.0))
+    stamped(unit, 0.9, 'c', (0.0,))
+    assert unit.is_complete
+    assert unit.age(0.9) == pytest.approx(0.1)
+
+
+def test_what_is_said_of_the_motion_is_of_the_needed_joints():
+    unit = moving(needed=('a', 'b'))
+    unit.update(0.0, list(NAMES), [0.0, 5.0, 5.0], [2.5, 0.0, 9.0])
+    assert unit.runaway() == 'a at 2.5 (limit 1)'
+    assert unit.outside() == 'b at 5 (limits -3 to 3)'

@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 ALLOWED = {('READY', 'STARTING'), ('READY', 'FAULT'), ('STARTING', 'ACTIVE'),
-           ('STARTING', 'STOPPING'), ('ACTIVE', 'STOPPING'), ('STOPPING', 'READY'),
-           ('STOPPING', 'FAULT'), ('FAULT', 'STARTING'), ('FAULT', 'FAULT')}
+           ('STARTING', 'STARTING'), ('STARTING', 'STOPPING'), ('ACTIVE', 'STARTING'),
+           ('ACTIVE', 'STOPPING'), ('STOPPING', 'READY'), ('STOPPING', 'FAULT'),
+           ('FAULT', 'STARTING'), ('FAULT', 'FAULT')}
 
 
 def test_a_whole_run():
@@ -69,6 +70,20 @@ def test_a_stop_can_be_hastened_but_never_slowed():
     assert machine.progress(3.0) == 1.0
 
 
+def test_a_restart_begins_the_ramp_anew_and_only_while_driving():
+    machine = OutputStateMachine()
+    machine.restart(0.0, 1.0, 'the clock went back')
+    assert machine.name == 'READY'
+    machine.enable(0.0, 1.0)
+    machine.advance(1.0)
+    machine.restart(5.0, 1.0, 'the clock went back')
+    assert (machine.name, machine.reason) == ('STARTING', 'the clock went back')
+    assert machine.progress(5.5) == 0.5
+    machine.stop(5.6, 1.0, 'off')
+    machine.restart(5.7, 1.0, 'the clock went back')
+    assert machine.name == 'STOPPING'
+
+
 def test_enabling_twice_or_while_stopping_changes_nothing():
     machine = OutputStateMachine()
     assert machine.enable(0.0, 1.0)
@@ -78,8 +93,8 @@ def test_enabling_twice_or_while_stopping_changes_nothing():
     assert machine.name == 'STOPPING'
 
 
-@given(st.lists(st.tuples(st.sampled_from(['enable', 'stop', 'fault', 'advance', 'hasten']),
-                          st.floats(0, 2)), max_size=40))
+@given(st.lists(st.tuples(st.sampled_from(
+    ['enable', 'stop', 'fault', 'advance', 'hasten', 'restart']), st.floats(0, 2)), max_size=40))
 def test_no_sequence_of_calls_makes_a_step_that_is_not_allowed(calls):
     changes = ['READY']
     machine = OutputStateMachine(lambda state, reason: changes.append(state.name))
@@ -90,6 +105,8 @@ def test_no_sequence_of_calls_makes_a_step_that_is_not_allowed(calls):
             machine.enable(now, 1.0)
         elif call == 'advance':
             machine.advance(now)
+        elif call == 'restart':
+            machine.restart(now, 1.0, 'the clock went back')
         elif call == 'hasten':
             machine.hasten(now, 0.1)
         else:

@@ -2,6 +2,8 @@
 
 from array import array
 
+from dynamics_node.output import RejectedStateError
+from dynamics_node.output.joint_state_buffer import MAX_NAMES
 from dynamics_node.ros import joint_state_reader
 from dynamics_node.ros.joint_state_reader import JointStateReader
 from hypothesis import given
@@ -64,6 +66,20 @@ def test_the_names_are_read_once(monkeypatch):
     message.name = ['a', 'c']
     with pytest.raises(TypeError):  # the names are new: rclpy would be asked
         reader.read(serialize_message(message))
+
+
+@pytest.mark.parametrize('frame', ['', 'base_link'])
+def test_more_names_than_any_robot_has_are_refused_before_anything_is_made_of_them(
+        monkeypatch, frame):
+    def message(count):
+        state = JointState(name=['a'] * count)
+        state.header.frame_id = frame
+        return serialize_message(state)
+    reader = JointStateReader()
+    assert len(reader.read(message(MAX_NAMES)).name) == MAX_NAMES
+    monkeypatch.setattr(joint_state_reader, 'deserialize_message', None)
+    with pytest.raises(RejectedStateError, match='at most 4096 names, got 4097'):
+        reader.read(message(MAX_NAMES + 1))
 
 
 @pytest.mark.parametrize('length', [0, 3, 11, 30, 40, 48, 60])

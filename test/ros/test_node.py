@@ -223,17 +223,107 @@ def test_parameters_change_at_run_time_and_wrong_ones_change_nothing(client, sta
     client.until(lambda: torques[-1].effort[0] == pytest.approx(0.5 * 3 * 0.7 * 1.62), publish)
 
 
-def test_diagnostics_tell_about_model_states_and_output(client, start):
+def statuses(received):
+    """Return the values of the newest diagnostics by status, and the messages."""
+    if not received:
+        return {}, {}
+    newest = {status.name.removeprefix('dynamics_node: '): status
+              for status in received[-1].status}
+    return ({name: {value.key: value.value for value in status.values}
+             for name, status in newest.items()},
+            {name: status.message for name, status in newest.items()})
+
+
+def test_diagnostics_tell_about_model_states_output_and_state_machine(client, start):
     received = client.listen(DiagnosticArray, '/diagnostics')
     start(robot_description_file=PENDULUM)
 
-    def rate():
-        values = {value.key: value.value for status in (received[-1].status if received else ())
-                  for value in status.values}
-        return float(values.get('rate [Hz]', 0.0)) > 10 and values
+    def publish():
+        client.publish(['hinge', 'x'], [0.0, 0.0])
 
-    values = client.until(rate, lambda: client.publish(['hinge', 'x'], [0.0, 0.0]))
-    assert values['joints'] == 'hinge'
-    assert values['state'] == 'READY'
-    assert values['moving mass [kg]'] == '3'
-    client.until(lambda: any('stale: hinge' in status.message for status in received[-1].status))
+    def values(part):
+        return statuses(received)[0].get(part, {})
+
+    client.until(lambda: float(values('joint states').get('rate [Hz]', 0.0)) > 10, publish)
+    assert values('model')['joints'] == 'hinge'
+    assert values('model')['moving mass [kg]'] == '3'
+    assert values('joint states')['publishers'] == '1'
+    assert float(values('joint states')['age [s]']) < 1.0
+    assert values('state machine') == {
+        'state': 'READY', 'reason': 'output is off until it is enabled', 'latched fault': ''}
+    assert values('output')['topic'] == '/forward_effort_controller/commands'
+    assert values('output')['commands'] == '0'
+
+    # What is dropped is counted by its reason.
+    def bad():
+        client.publish(['hinge'], [np.nan])
+        client.during(0.01)
+        client.publish(['hinge'], [])
+    client.until(lambda: {'rejected: not finite', 'rejected: length'} <= set(
+        values('joint states')), bad, period=0.05)
+    client.until(lambda: statuses(received)[1]['joint states'] == 'stale: hinge')
+
+    # A latched fault and what it was about.
+    client.until_heard(publish)
+    assert client.enable(True, publish).success
+    client.until(lambda: values('output')['commands'] != '0', publish)
+    client.until(lambda: values('state machine')['state'] == 'FAULT', timeout=5.0)
+    assert 'stale' in values('state machine')['latched fault']
+
+
+def test_an_arm_that_runs_away_or_jumps_or_is_at_its_limit_stops_the_output(client, start):
+    # The pendulum of the test may be 20 rad/s fast and hold 20 N m; here it needs more.
+    start(robot_description_file=PENDULUM, state_timeout=0.5, effort_limits='[4.0]',
+          start_ramp=0.0, stop_ramp=0.0, effort_rate_limits='[1000.0]')
+    client.record_commands()
+
+    def at(position, velocity=0.0):
+        return lambda: client.publish(['hinge'], [position], [velocity])
+
+    def enabled():
+        client.until_heard(at(1.5))
+        assert client.enable(True, at(1.5)).success
+        client.until(client.output_is('ACTIVE'), at(1.5))
+
+    for action, reason in (
+            (at(1.5, 41.0), 'runaway: hinge at 41 (limit 20), more than 2 times'),
+            (at(-1.5), 'expected a position that the joint can have reached, got hinge from 1.5'),
+            (at(1.5 - 0.3), None), (at(1.2), 'effort above its limit for 2 s: hinge: ')):
+        if reason is None:  # a step that the joint can make in 0.01 s
+            continue
+        if 'limit for' in reason:
+            client.during(0.05, at(1.5))
+            client.until_heard(at(1.2))
+        enabled() if 'limit for' not in reason else client.enable(True, action)
+        client.until(client.output_is('FAULT'), action)
+        assert client.outputs[-1].reason.startswith(reason)
+        assert client.commands[-1][1] == [0.0]
+
+
+def test_stamps_that_cannot_be_true_make_no_torque_and_the_refusal_says_so(client, start):
+    process = start(robot_description_file=PENDULUM)
+    torques = client.listen(JointState, '/dynamics_node/gravity_torque')
+    message = JointState(name=['hinge'], position=[0.0])
+
+    def stamped(offset, moves=True):
+        def publish():
+            now = client.node.get_clock().now().nanoseconds if moves else 0
+            stamp = now + round(offset * 1e9)
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 1_000_000_000)
+            client.states.publish(message)
+        return publish
+    # In time, and without a stamp: arrival counts.
+    for good in (stamped(-0.02), stamped(0, moves=False)):
+        torques.clear()
+        client.until(lambda: len(torques) > 3, good)
+    frozen = client.node.get_clock().now().nanoseconds * 1e-9
+    for bad in (stamped(-5.0), stamped(5.0), stamped(frozen, moves=False)):
+        client.until(lambda: 'no joint state' in client.enable(True, bad).message, bad)
+        torques.clear()
+        client.during(0.2, bad)
+        assert torques == []
+    answer = client.enable(True, stamped(-5.0))
+    assert 'dropped so far: ' in answer.message
+    assert ' for stamp' in answer.message
+    process.send(signal.SIGINT)
+    assert 'synchronise the clocks of both machines' in process.wait()[1]

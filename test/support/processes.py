@@ -57,10 +57,10 @@ class NodeProcess:
 class Client:
     """Publishes states, calls services and records what the node says."""
 
-    def __init__(self):
+    def __init__(self, name='test_client', **options):
         self.context = rclpy.Context()
         rclpy.init(context=self.context)
-        self.node = rclpy.create_node('test_client', context=self.context)
+        self.node = rclpy.create_node(name, context=self.context, **options)
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         self.states = self.node.create_publisher(JointState, 'joint_states', 1)

@@ -11,6 +11,7 @@ import atexit
 import contextlib
 import io
 import os
+from pathlib import Path
 import subprocess
 import sys
 
@@ -20,6 +21,9 @@ from . import robot_code, store
 
 # Name of the machine code → the process that makes it, so that no robot is compiled twice.
 _processes: dict = {}
+# Robots that are compiled at the same time. Whoever publishes robot descriptions decides how many
+# there are, and each process takes a core and some 60 MB for seconds.
+_MOST_AT_ONCE = 2
 
 
 def start(structure, numbers):
@@ -35,8 +39,9 @@ def start(structure, numbers):
 
     Returns
     -------
-    subprocess.Popen
-        Its exit code is 0 if the machine code is on disk.
+    subprocess.Popen or None
+        Its exit code is 0 if the machine code is on disk. None if enough others are being made:
+        ask again later.
 
     Raises
     ------
@@ -46,8 +51,13 @@ def start(structure, numbers):
     """
     name = store.key(structure, numbers)
     if name not in _processes:
+        if sum(process.poll() is None for process in _processes.values()) >= _MOST_AT_ONCE:
+            return None
         # It finds the same packages, is nobody's foreground, and gives way to everything else.
-        environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
+        # The same and no others: with -m alone, Python would look into the current folder first,
+        # and a numpy.py that somebody left there would run.
+        places = os.pathsep.join(place or str(Path.cwd()) for place in sys.path)
+        environment = dict(os.environ, PYTHONPATH=places, PYTHONSAFEPATH='1')
         process = subprocess.Popen(
             [sys.executable, '-m', __name__], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL, env=environment, start_new_session=True)

@@ -96,7 +96,7 @@ def load(name):
     """
     try:
         place = folder()
-        if not _is_ours(place.stat()):
+        if not _is_our_folder(place):
             return None
         # Neither a link to elsewhere nor a pipe that would never answer.
         file = os.open(place / name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
@@ -105,7 +105,7 @@ def load(name):
             if not stat.S_ISREG(status.st_mode) or not _is_ours(status):
                 return None
             content = stream.read()
-        os.utime(place / name)
+            os.utime(file)
     except (OSError, RuntimeError):
         return None
     size = len(_head(name, b''))
@@ -115,6 +115,11 @@ def load(name):
 
 def _head(name, code):
     return _MAGIC + hashlib.sha256(name.encode() + code).digest()
+
+
+def _is_our_folder(place):
+    # A link that somebody else has set could lead to any other folder of ours.
+    return place.lstat().st_uid in (os.getuid(), 0) and _is_ours(place.stat())
 
 
 def _is_ours(status):
@@ -141,6 +146,8 @@ def save(name, code):
     try:
         place = folder()
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if not _is_our_folder(place):
+            return False  # it would not be loaded from there, and nothing there is ours to clear
         _clear(place)
         with tempfile.NamedTemporaryFile(dir=place, prefix='new-', delete=False) as file:
             unfinished = Path(file.name)

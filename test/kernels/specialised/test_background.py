@@ -1,10 +1,16 @@
 """Another process compiles, once per robot, and leaves the machine code on disk."""
 
+from pathlib import Path
+import sys
+
 from dynamics_node import RobotModel
 from dynamics_node.kernels.packing import pack
 from dynamics_node.kernels.specialised import background, store
 import pytest
+from support.machine_code import needs_machine_code
 from support.robots import PENDULUM, random_urdf
+
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(autouse=True)
@@ -37,3 +43,30 @@ def test_a_place_that_cannot_be_written_gives_none(folder, monkeypatch):
     (folder / 'file').write_text('')
     monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(folder / 'file' / 'cache'))
     assert background.start(*packed(PENDULUM)).wait(60.0) == 1
+
+
+def test_a_flood_of_robots_does_not_become_a_flood_of_processes(monkeypatch):
+    monkeypatch.setattr(background, '_MOST_AT_ONCE', 1)
+    robot, other = packed(PENDULUM), packed(random_urdf(1, joints=2))
+    process = background.start(*robot)
+    assert background.start(*other) is None
+    assert background.start(*robot) is process
+    assert process.wait(60.0) == 0
+    assert background.start(*other).wait(60.0) == 0
+
+
+@needs_machine_code
+def test_nothing_that_lies_in_the_current_folder_runs(tmp_path_factory, monkeypatch):
+    current = tmp_path_factory.mktemp('somebody_elses')
+    (current / 'numpy.py').write_text('open("ran", "w")')
+    monkeypatch.chdir(current)
+    assert background.start(*packed(PENDULUM)).wait(60.0) == 0
+    assert [path.name for path in current.iterdir()] == ['numpy.py']
+
+
+def test_packages_of_an_interactive_python_are_found(monkeypatch):
+    # There '' stands for the current folder.
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(sys, 'path', [
+        '', *(place for place in sys.path if place and Path(place).resolve() != ROOT)])
+    assert background.start(*packed(PENDULUM)).wait(60.0) == 0

@@ -1,6 +1,7 @@
 """Machine code on disk: found again, never trusted blindly."""
 
 import os
+import stat
 
 from dynamics_node import RobotModel
 from dynamics_node.kernels.packing import pack
@@ -65,6 +66,35 @@ def test_a_folder_that_others_may_write_counts_as_empty(folder):
     store.save('name', CODE)
     folder.chmod(0o777)
     assert store.load('name') is None
+
+
+def test_in_a_folder_that_others_may_write_nothing_changes(folder, monkeypatch):
+    monkeypatch.setattr(store, '_MOST_FILES', 1)
+    folder.mkdir()
+    folder.chmod(0o777)
+    for number in range(3):
+        (folder / f'{number:064x}').write_text('theirs')
+    assert not store.save('name', CODE)
+    assert len(list(folder.iterdir())) == 3
+
+
+def test_a_link_of_ones_own_to_another_folder_is_followed(folder, tmp_path):
+    (tmp_path / 'disk').mkdir(mode=0o700)
+    folder.symlink_to(tmp_path / 'disk')
+    assert store.save('name', CODE)
+    assert store.load('name') == CODE
+
+
+def test_a_link_that_somebody_else_has_set_is_not_followed(folder, tmp_path, monkeypatch):
+    (tmp_path / 'disk').mkdir(mode=0o700)
+    folder.symlink_to(tmp_path / 'disk')
+    store.save('name', CODE)
+    status = list(folder.lstat())
+    status[stat.ST_UID] = os.getuid() + 1
+    monkeypatch.setattr(store.Path, 'lstat', lambda path: os.stat_result(status))
+    assert store.load('name') is None
+    assert not store.save('other', CODE)
+    assert [path.name for path in (tmp_path / 'disk').iterdir()] == ['name']
 
 
 def test_the_oldest_files_go(folder, monkeypatch):

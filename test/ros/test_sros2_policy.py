@@ -1,0 +1,112 @@
+"""config/sros2_policy.xml allows the node what it does, and nothing else."""
+
+from pathlib import Path
+import re
+
+from dynamics_interfaces.srv import GetDynamics
+from dynamics_node.ros.parameter_table import PARAMETERS
+import pytest
+import rclpy
+from rclpy.node import NodeNameNonExistentError
+from std_msgs.msg import Float64MultiArray, String
+from support.robots import PENDULUM
+from support.sros2_policy import POLICY, PolicyError, read
+
+DOCUMENT = Path(__file__).parents[2] / 'docs' / 'security.md'
+# Only when the node is to be enabled, and only where a controller listens.
+ASKED = '/forward_effort_controller/get_parameters'
+
+
+def graph(client, namespace='/'):
+    """Return what the node does, as seen from another one: permission → full names."""
+    node = client.node
+    questions = {'publish': node.get_publisher_names_and_types_by_node,
+                 'subscribe': node.get_subscriber_names_and_types_by_node,
+                 'reply': node.get_service_names_and_types_by_node,
+                 'request': node.get_client_names_and_types_by_node}
+    try:
+        return {permission: {name for name, _ in question('dynamics_node', namespace)}
+                for permission, question in questions.items()}
+    except NodeNameNonExistentError:
+        return {permission: set() for permission in questions}
+
+
+def without(names, *others):
+    return {permission: found - set(others) for permission, found in names.items()}
+
+
+def difference(names, others):
+    return {permission: found - others.get(permission, set())
+            for permission, found in names.items() if found - others.get(permission, set())}
+
+
+def check(client, allowed, *optional, namespace='/'):
+    """Demand that the node does all that is allowed, once everything is there, and no more."""
+    wanted = without(allowed, *optional)
+    try:
+        client.until(lambda: not difference(wanted, graph(client, namespace)))
+    except AssertionError:
+        unused = difference(wanted, graph(client, namespace))
+        raise AssertionError(f'allowed, but not used: {unused}') from None
+    assert difference(graph(client, namespace), allowed) == {}
+
+
+def test_the_node_does_what_it_is_allowed_and_no_more(client, start):
+    start(use_sim_time='true')
+    check(client, read(POLICY.read_text()).allowed, ASKED)
+
+
+def test_it_holds_in_another_namespace(client, start):
+    start('__ns:=/left', use_sim_time='true')
+    allowed = read(POLICY.read_text(), namespace='/left').allowed
+    check(client, allowed, f'/left{ASKED}', namespace='/left')
+
+
+def test_a_node_at_work_does_no_more(client, start):
+    start()
+    controller = rclpy.create_node('forward_effort_controller', context=client.context)
+    commands = []
+    controller.create_subscription(Float64MultiArray, 'forward_effort_controller/commands',
+                                   commands.append, 10)
+    client.executor.add_node(controller)
+    allowed = read(POLICY.read_text()).allowed
+    forbidden = []
+
+    def state():
+        client.publish(['hinge'], [0.5])
+        forbidden.append(difference(graph(client), allowed))
+    client.description.publish(String(data=PENDULUM.read_text()))
+    client.until_heard(state)
+    assert client.enable(True, state).success
+    client.until(lambda: len(commands) > 20, state)
+    assert client.call(GetDynamics, '/dynamics_node/get_dynamics', action=state).success
+    assert not any(forbidden), max(forbidden, key=len)
+    check(client, allowed, ASKED, '/clock')
+    controller.destroy_node()
+
+
+def test_it_is_that_of_the_default_parameters():
+    [topic] = [parameter.default for parameter in PARAMETERS if parameter.name == 'command_topic']
+    profile = read(POLICY.read_text())
+    assert f'/{topic}' in profile.allowed['publish']
+    assert profile.allowed['request'] == {f'/{topic.rpartition("/")[0]}/get_parameters'} == {ASKED}
+
+
+def test_the_document_names_the_enclave_of_the_file():
+    text = DOCUMENT.read_text()
+    enclave = read(POLICY.read_text()).enclave
+    commands = re.findall(r'ros2 security create_(?:enclave|permission) \S+ (\S+)', text)
+    assert commands and set(commands) == {enclave}
+    assert re.findall(r'--enclave (\S+)', text) == [enclave]
+
+
+@pytest.mark.parametrize(('before', 'after'), [
+    ('0.2.0', '0.1.0'), ('publish=', 'write='), ('ALLOW', 'PERMIT'), (' reply="ALLOW"', ''),
+    ('<service>~/enable</service>', '<topic>~/enable</topic>'), ('>~/state<', '>~/dynamics<'),
+    ('>joint_states<', '>*<'), (' node="dynamics_node"', ''), ('"/dynamics_node"', '""'),
+], ids=lambda text: text)
+def test_a_damaged_policy_is_refused(before, after):
+    text = POLICY.read_text()
+    assert before in text
+    with pytest.raises(PolicyError):
+        read(text.replace(before, after))
