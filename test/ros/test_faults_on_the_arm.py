@@ -87,16 +87,18 @@ def check_fading(rig, begin):
     computed = np.array(times[first - 1:-1]) - begin
     left = np.clip(1.0 - computed / STOP_RAMP, 0.0, 1.0)
     faded = np.array(commands[first:])
+    print([(output.name, time, output.reason) for output, time in zip(rig.client.outputs, rig.client.output_times)], begin)
+    print(computed.tolist(), np.abs(faded).max(axis=1).tolist())
     assert (np.abs(faded) <= left[:, None] * np.abs(held) + 1e-9).all()
     assert not faded[-1].any()
 
 
-def assert_it_is_still_held(rig, since):
+def assert_it_is_still_held(rig, since, fault=''):
     """The arm has not moved more than a push by a nearly right message explains."""
     _, position, velocity, _ = rig.client.truth_between(since, rig.client.now)
-    assert rig.client.output == 'ACTIVE', rig.client.outputs[-1].reason
-    assert np.abs(position - position[0]).max() < HELD
-    assert np.abs(velocity).max() < 0.5
+    assert rig.client.output == 'ACTIVE', (fault, rig.client.outputs[-1].reason)
+    assert np.abs(position - position[0]).max() < HELD, fault
+    assert np.abs(velocity).max() < 0.5, fault
 
 
 # What does not stop it -----------------------------------------------------------------------
@@ -113,23 +115,25 @@ def test_bad_messages_among_good_ones_are_counted_and_do_not_move_the_arm(rig):
     client = rig.client
     client.until_diagnosed()
     before = dict(client.diagnostics['joint states'])
-    moved = []
-    for fault in HARMLESS:
-        begin = client.now
-        client.set_fault(fault)
-        rig.during(0.25)
-        try:
-            assert_it_is_still_held(rig, begin)
-        except AssertionError as error:
-            moved.append((fault, str(error)))
-            rig.float()
-    client.set_fault('none')
-    assert moved == []
-    client.until_diagnosed()
-    counted = {kind: client.number('joint states', f'rejected: {kind}')
-               - float(before.get(f'rejected: {kind}', 0))
-               for kind in set(HARMLESS.values()) - {None}}
-    assert {kind for kind, count in counted.items() if count == 0} == set()
+
+    def is_counted(kind):
+        key = f'rejected: {kind}'
+        return kind is None or client.number('joint states', key) > float(before.get(key, 0))
+
+    # Once each; those of which the newest has always won, or that were lost on the way, again.
+    todo = dict(HARMLESS)
+    for _ in range(5):
+        for fault in todo:
+            begin = client.now
+            client.set_fault(fault)
+            rig.during(0.25)
+            assert_it_is_still_held(rig, begin, fault)
+        client.set_fault('none')
+        client.until_diagnosed()
+        todo = {fault: kind for fault, kind in todo.items() if not is_counted(kind)}
+        if not todo:
+            return
+    raise AssertionError(f'not counted: {todo}')
 
 
 def test_a_short_freeze_of_the_line_is_bridged(rig):
