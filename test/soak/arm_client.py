@@ -10,12 +10,14 @@ import numpy as np
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool, Trigger
 from support.processes import Client, LATCHED, PATIENCE
 
 from .command_judge import CommandJudge
+from .line import stamp_of
 
 REMEMBERED = 20_000  # states and commands: 40 s of each
 # Whatever was written so long ago has arrived, s.
@@ -32,9 +34,9 @@ class ArmClient(Client):
 
     Attributes
     ----------
-    truth : deque of (float, numpy.ndarray, numpy.ndarray, numpy.ndarray)
-        What the robot itself says, whatever the relay makes of it: time, position, velocity and
-        effort of the driven joints.
+    truth : deque of (float, bytes)
+        What the robot itself says, whatever the relay makes of it: time and message; see
+        `state` and `truth_between`.
     commands : deque of (float, list of float)
         Time and efforts.
     outputs : list of OutputState
@@ -74,7 +76,9 @@ class ArmClient(Client):
         self.on_command = self.on_output = self.on_diagnostics = lambda *news: None
         self._names, self._rows = names, None
         many = QoSProfile(depth=1000)
-        self.node.create_subscription(JointState, 'robot/joint_states', self._on_truth, many)
+        # As bytes: only few of them are ever looked into.
+        self.node.create_subscription(JointState, 'robot/joint_states', self._on_truth, many,
+                                      raw=True)
         self.node.create_subscription(Float64MultiArray, 'forward_effort_controller/commands',
                                       self._on_command, many)
         self.node.create_subscription(OutputState, 'dynamics_node/state', self._on_output,
@@ -107,15 +111,20 @@ class ArmClient(Client):
         return self.outputs[-1].name if self.outputs else ''
 
     @property
+    def state(self):
+        """Newest position, velocity and effort of the driven joints; shape (n,) each."""
+        return self._read(self.truth[-1][1])
+
+    @property
     def is_held(self):
         """Whether the effort of the arm is that of the newest command."""
-        return bool(self.commands) and np.allclose(self.truth[-1][3], self.commands[-1][1],
+        return bool(self.commands) and np.allclose(self.state[2], self.commands[-1][1],
                                                    rtol=1e-3, atol=1e-3)
 
     @property
     def speed(self):
         """Largest newest speed of any joint, rad/s or m/s."""
-        return np.abs(self.truth[-1][2]).max()
+        return np.abs(self.state[1]).max()
 
     def settle(self, everything=False):
         """Judge what has certainly arrived, or everything that is there."""
@@ -130,7 +139,7 @@ class ArmClient(Client):
 
     def truth_between(self, begin, end):
         """
-        Return what the robot itself said within a time, s.
+        Return what the robot itself said within a time, s; wait until it has said all of it.
 
         Returns
         -------
@@ -138,7 +147,8 @@ class ArmClient(Client):
             s; rad or m, per s, and N m or N, of the driven joints.
 
         """
-        chosen = [entry for entry in self.truth if begin <= entry[0] <= end]
+        self.until(lambda: self.truth[-1][0] >= end)
+        chosen = [(time, *self._read(data)) for time, data in self.truth if begin <= time <= end]
         return tuple(np.array(column) for column in zip(*chosen))
 
     def set_fault(self, fault):
@@ -180,13 +190,15 @@ class ArmClient(Client):
         first = self.diagnostics_received
         self.until(lambda: self.diagnostics_received >= first + 2)
 
-    def _on_truth(self, message):
+    def _on_truth(self, data):
+        self.truth.append((self.time_of(stamp_of(data)), data))
+
+    def _read(self, data):
+        message = deserialize_message(data, JointState)
         if self._rows is None:
             self._rows = [message.name.index(name) for name in self._names]
-        rows, stamp = self._rows, message.header.stamp
-        self.truth.append((self.time_of(stamp.sec * 1_000_000_000 + stamp.nanosec),
-                           *(np.array(field)[rows] for field in (
-                               message.position, message.velocity, message.effort))))
+        return tuple(np.array(field)[self._rows] for field in (
+            message.position, message.velocity, message.effort))
 
     def _on_command(self, message, info):
         written, values = self.time_of(info['source_timestamp']), message.data.tolist()

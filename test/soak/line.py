@@ -16,6 +16,7 @@ CLOCKS_APART = 30_000_000_000  # [ns]
 LOOP = 100  # states that the loop of a bag repeats
 # What best-effort DDS still delivers, and what it never does: there it loses a fragment.
 MANY, MILLION = 10_000, 1_000_000
+BUSY = 100  # states for which the line carries nothing else than a million names
 _STAMP = struct.Struct('<iI')
 _COUNT = struct.Struct('<I')
 _REPRESENTATION = b'\x00\x01\x00\x00'
@@ -60,7 +61,7 @@ class Line:
                              f'for every seventh message, got {fault!r}')
         self.fault = fault
         self._act, self._every = FAULTS[kind], int(every or 1)
-        self._count = 0
+        self._count = self._busy = 0
         self._held = None
 
     def out(self, message):
@@ -79,6 +80,9 @@ class Line:
         """
         self._count += 1
         self._recent.append(message)
+        if self._busy:
+            self._busy -= 1
+            return []
         return [message] if self._count % self._every else self._act(self, message)
 
     # The faults ------------------------------------------------------------------------------
@@ -135,6 +139,8 @@ class Line:
         return [self._names(MANY)]
 
     def _million_names(self, message):
+        # Newer states would drive its fragments out of the queue before they have arrived.
+        self._busy = BUSY
         return [self._names(MILLION)]
 
     def _jump(self, message):

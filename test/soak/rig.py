@@ -65,7 +65,7 @@ class Rig:
         except BaseException:
             self.close()
             raise
-        self.start_pose = self.client.truth[-1][1]
+        self.start_pose = self.client.state[0]
 
     def start_missing(self):
         """Start what does not run: robot, line, node."""
@@ -140,7 +140,7 @@ class Rig:
     @property
     def distance(self):
         """How far the arm stands from its start pose, the largest of any joint, rad or m."""
-        return np.abs(self.client.truth[-1][1] - self.start_pose).max()
+        return np.abs(self.client.state[0] - self.start_pose).max()
 
     def enable(self, timeout=30.0):
         """Enable the output, asking again until it is accepted: others need time to be gone."""
@@ -148,6 +148,16 @@ class Rig:
         while not (answer := self.client.enable(True)).success:
             assert time.monotonic() < end, answer.message
             self.during(0.1)
+
+    def explain(self):
+        """Return what may be the cause of something unexpected, for an error message."""
+        times = [time for time, _ in self.client.truth][-1000:]
+        gap = np.diff(times).max(initial=0.0)
+        output = self.client.outputs[-1] if self.client.outputs else None
+        return '\n'.join([
+            f'{output.name}: {output.reason}' if output else 'no state of the output',
+            f'longest gap between the last {len(times)} states of the robot: {gap:.3f} s',
+            *self.processes.lines('node')[-10:]])
 
     def until_fault(self, timeout=10.0):
         """Wait until a stop has ended in FAULT, catch the arm, and return the reason."""

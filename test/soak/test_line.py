@@ -6,7 +6,7 @@ from builtin_interfaces.msg import Time
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
-from soak.line import FAULTS, FLOOD, Line, MANY, shifted, stamp_of
+from soak.line import BUSY, FAULTS, FLOOD, Line, MANY, shifted, stamp_of
 
 NAMES = ['a', 'b', 'c', 'd']
 
@@ -123,6 +123,12 @@ def test_many_names_are_a_message_that_can_be_read():
     assert len(message.name) == len(message.position) == MANY
     assert {*message.name} == {'j'}
     assert 16e6 <= len(only(put_through('million_names'))) < 17e6
+
+
+def test_a_line_that_carries_a_million_names_carries_nothing_else_for_a_while():
+    out = put_through('million_names/50', 50 + BUSY + 4)
+    assert [len(messages) for messages in out] == [*[1] * 50, *[0] * BUSY, 1, 1, 1, 1]
+    assert isinstance(out[49][0], bytes) and out[-1][0].name == NAMES
 
 
 def test_jump_and_too_fast():
