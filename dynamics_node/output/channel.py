@@ -62,6 +62,7 @@ class OutputChannel:
         self._last_time = 0.0
         self._saturated_since = None
         self._start_from = self._stop_from = np.zeros(0)
+        self._holds = False
 
     def set_limiter(self, limits, rate_limits, scale, names=()):
         """
@@ -121,7 +122,10 @@ class OutputChannel:
 
     def fault(self, now, reason):
         """
-        Stop because what is measured is no healthy arm; nothing happens while output is off.
+        Stop because the arm must not be driven any further; nothing happens while output is off.
+
+        The last command is not held, whatever `settings.stop_behavior` says: it may be what the
+        arm runs away with.
 
         Parameters
         ----------
@@ -132,9 +136,9 @@ class OutputChannel:
 
         """
         if self.machine.is_on:
-            self.stop(now, reason, is_fault=True)
+            self.stop(now, reason, is_fault=True, may_hold=False)
 
-    def stop(self, now, reason, is_fault=False, within=None):
+    def stop(self, now, reason, is_fault=False, within=None, may_hold=True):
         """
         Begin to stop, as `settings.stop_behavior` says.
 
@@ -148,15 +152,20 @@ class OutputChannel:
             Whether the stop ends in FAULT.
         within : float, optional
             Longest time that the stop may take, s: when the process has to end.
+        may_hold : bool
+            Whether stop_behavior 'hold' is obeyed; otherwise the effort goes to zero.
 
         """
-        ramp = self.settings.stop_ramp if self.settings.stop_behavior == 'ramp_to_zero' else 0.0
+        behavior = self.settings.stop_behavior
+        holds = behavior == 'hold' and may_hold
+        ramp = 0.0 if holds or behavior == 'zero' else self.settings.stop_ramp
         if within is not None:
             ramp = min(ramp, within)
             self.machine.hasten(now, within)
         if self.machine.is_driving:
             self._stop_from = self.limiter.last
-            if self.settings.stop_behavior == 'hold':
+            self._holds = holds
+            if holds:
                 reason += ' (stop_behavior hold: the last efforts stay in force)'
         self.machine.stop(now, ramp, reason, is_fault)
 
@@ -234,7 +243,7 @@ class OutputChannel:
 
     def _stopping(self, now):
         is_over = self.machine.progress(now) >= 1.0
-        if is_over and (self.settings.stop_behavior == 'hold' or not self.limiter.last.any()):
+        if is_over and (self._holds or not self.limiter.last.any()):
             # Only now, so that whoever hears of the new state has got the last command before.
             self.machine.advance(now)
             return None

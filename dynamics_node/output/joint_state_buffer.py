@@ -125,9 +125,10 @@ class JointStateBuffer:
         ------
         RejectedStateError
             If lengths differ, a name comes twice, the stamp is far from the clock or not newer
-            than the last one, or the position of a needed joint is not finite or further away
-            than the joint can have moved. That of another joint is passed over. The third jump
-            in a row is a fault: the last position is forgotten, so that the next message counts.
+            than the last one, or the position of a needed joint is not finite or further from
+            one that is still fresh than the joint can have moved. That of another joint is
+            passed over. The third jump in a row is a fault: the last position is forgotten, so
+            that the next message counts.
 
         """
         try:
@@ -178,6 +179,8 @@ class JointStateBuffer:
     def _check_steps(self, now, positions, stamp):
         limits, position, time = self.limits, self._position, self._time
         for source, target in self._needed_pairs:
+            if now - time[target] > self.tolerance.seconds:
+                continue  # too long ago to say where the joint can be by now
             last = self._stamp[target]
             dt = (stamp - last) * 1e-9 if stamp and last else now - time[target]
             if limits.is_impossible(target, position[target], positions[source], dt):

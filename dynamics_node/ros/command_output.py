@@ -89,11 +89,19 @@ class CommandOutput:
             return
         count = len(robot.joint_names)
         limits = robot.effort_limits(self._parameters['effort_limits'])
+        self._warn_above(robot, limits)
         rates = self._parameters['effort_rate_limits']
         scale = self._parameters['effort_scale']
         self.channel.set_limiter(limits, np.array(rates) if rates else limits / 0.1,
                                  np.array(scale) if scale else np.ones(count),
                                  robot.joint_names)
+
+    def _warn_above(self, robot, limits):
+        of_urdf = robot.effort_limits(())
+        above = [f'{name}: {limit:g}, in the URDF {most:g}' for name, limit, most in zip(
+            robot.joint_names, limits, of_urdf, strict=True) if limit > most]
+        if above:
+            self.logger.warning('effort_limits are above those of the URDF: ' + '; '.join(above))
 
     def stop(self, reason, is_fault=False, within=None):
         """Begin to stop; see `OutputChannel.stop`."""

@@ -102,11 +102,17 @@ class _Question:
     def __init__(self, node, name):
         self.name = name
         self._node = node
-        self._client = node.create_client(GetParameters, f'{name}/get_parameters')
+        try:
+            self._client = node.create_client(GetParameters, f'{name}/get_parameters')
+        except Exception as error:  # DDS security may forbid it
+            self._client = None
+            node.get_logger().warning(f'{name} cannot be asked for its joints: {error}')
         self._answers = {}
 
     def is_open(self, elapsed):
         """Ask as soon as that is possible; tell whether the answers are worth waiting for."""
+        if self._client is None:
+            return False
         if not self._answers:
             if not self._client.service_is_ready():
                 return elapsed < FIND_WITHIN
@@ -146,4 +152,5 @@ class _Question:
 
     def close(self):
         """Ask no more."""
-        self._node.destroy_client(self._client)
+        if self._client is not None:
+            self._node.destroy_client(self._client)

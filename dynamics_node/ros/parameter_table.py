@@ -78,6 +78,12 @@ class Parameter:
                    TEXTS: self._texts, FLAG: self._flag}
         return convert[self.kind](value)
 
+    def constraints(self):
+        """Return in words which values are accepted; '' if the kind says it all."""
+        if self.choices:
+            return 'one of ' + ', '.join(self.choices)
+        return self._range() if self.kind in (DOUBLE, DOUBLES) else ''
+
     def _number(self, value):
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise self._error('a number', value)

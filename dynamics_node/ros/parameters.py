@@ -1,5 +1,7 @@
 """Parameters of the node: declared from the table, checked before they are taken."""
 
+import difflib
+
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.parameter import Parameter as RosParameter
 
@@ -50,6 +52,7 @@ class Parameters:
         self.logger = node.get_logger()
         self.values = check_all({name: value for name, value in self._declare().items()
                                  if value is not None})
+        self._warn_of_misspelt()
 
     def watch(self, on_change, further_check):
         """
@@ -83,6 +86,16 @@ class Parameters:
             self._node.set_descriptor(name, _descriptor(parameter, parameter.read_only))
         return given
 
+    def _warn_of_misspelt(self):
+        # ROS ignores a name that nobody declares; an `effort_limit` would then be no limit.
+        names = [parameter.name for parameter in PARAMETERS]
+        given = getattr(self._node, '_parameter_overrides', {})  # the only place where they are
+        for name in sorted(set(given) - set(names)):
+            alike = difflib.get_close_matches(name, names, n=1, cutoff=0.8)
+            if alike and not self._node.has_parameter(name):
+                self.logger.warning(f"there is no parameter '{name}', and its value is ignored: "
+                                    f"is '{alike[0]}' meant?")
+
     def _check(self, ros_parameters):
         try:
             self._merged(ros_parameters)
@@ -113,6 +126,7 @@ def _descriptor(parameter, read_only=False):
     # Dynamic typing, because rcl refuses [87, 12] for a double array by an exception; the
     # table's own check takes integers and says what is wrong with the rest.
     return ParameterDescriptor(description=parameter.description, read_only=read_only,
+                               additional_constraints=parameter.constraints(),
                                dynamic_typing=True)
 
 

@@ -258,3 +258,10 @@ def test_an_effort_above_its_limit_for_too_long_is_a_fault_and_a_moment_is_not()
     assert unit.machine.name == 'STOPPING'
     assert unit.machine.reason == 'effort above its limit for 2 s: joint 0: 40 limited to 10'
     assert unit.machine.fault
+
+
+def test_an_arm_that_must_not_be_driven_is_not_held_either():
+    unit = active(stop_behavior='hold')
+    unit.fault(1.0, 'runaway')
+    np.testing.assert_array_equal(stopped(unit, 1.0)[-1], [0, 0])
+    assert (unit.machine.name, unit.machine.reason) == ('FAULT', 'runaway')

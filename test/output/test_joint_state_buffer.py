@@ -222,6 +222,13 @@ def test_good_steps_in_between_begin_the_count_anew():
         stamped(unit, 0.02 * i + 0.02)
 
 
+def test_after_silence_any_position_is_believed():
+    unit = moving()
+    stamped(unit, 0.0)
+    stamped(unit, 0.11, position=(3.0, -3.0, 3.0))
+    np.testing.assert_array_equal(unit.position, [3.0, -3.0, 3.0])
+
+
 def test_joints_that_are_not_needed_may_jump():
     unit = moving(needed=('a',))
     stamped(unit, 0.0)

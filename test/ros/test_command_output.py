@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter as RosParameter
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from support.robots import ARM7, PENDULUM
@@ -113,13 +114,33 @@ def test_half_of_the_joints_alone_do_not_keep_the_output_alive(client, start):
     assert 'joint_states stale: last 0.5' in client.outputs[-1].reason
 
 
-def test_efforts_are_clamped_to_the_limit(client, start):
+def test_efforts_are_clamped_to_the_limit_and_not_for_long(client, start):
     start(robot_description_file=PENDULUM, effort_limits='[4]')
     client.record_commands()
     publish = level(client)
     enabled(client, publish)
     client.during(0.3, publish)
     assert max(effort for _, [effort] in client.commands) == 4.0
+    client.until(client.output_is('FAULT'), publish)
+    assert client.outputs[-1].reason == (
+        'effort above its limit for 2 s: hinge: 10.3005 limited to 4')
+    assert client.commands[-1][1] == [0.0]
+
+
+def test_an_arm_that_runs_away_or_jumps_stops_the_output(client, start):
+    start(robot_description_file=PENDULUM, stop_ramp=0.1)
+    client.record_commands()
+    publish = level(client)
+    for action, reason in (
+            (lambda: client.publish(['hinge'], [0.0], [41.0]),
+             'runaway: hinge at 41 (limit 20), more than 2 times the velocity limit'),
+            (lambda: client.publish(['hinge'], [1.5], [0.0]),
+             'expected a position that the joint can have reached, got hinge from 0 to 1.5')):
+        enabled(client, publish)
+        client.until(client.output_is('FAULT'), action)
+        assert client.outputs[-1].reason.startswith(reason)
+        assert client.commands[-1][1] == [0.0]
+        client.commands.clear()
 
 
 def test_garbage_while_active_never_reaches_the_command(client, start):
@@ -241,10 +262,52 @@ def test_enabling_is_refused_while_others_publish(client, start):
     assert '2 publishers on /joint_states' in answer.message
     client.node.destroy_publisher(rival)
     client.node.destroy_publisher(second)
-    client.during(1.0, publish)
+    client.until(lambda: client.enable(True, publish).success, publish)
+    client.until(client.output_is('ACTIVE'), publish)
+    assert 'already enabled' in client.enable(True, publish).message
+
+
+def test_nobody_listening_is_said_when_enabling(client, start):
+    start(robot_description_file=PENDULUM)
+    publish = level(client)
+    client.until_heard(publish)
     answer = client.enable(True, publish)
     assert answer.success, answer.message
     assert 'but nobody listens there' in answer.message
+
+
+@pytest.mark.parametrize('kind, topic, reason', [
+    (Float64MultiArray, TOPIC, f'1 other publisher(s) on /{TOPIC} (/test_client)'),
+    (JointState, 'joint_states', '2 publishers on /joint_states (/test_client)')])
+def test_a_rival_that_appears_while_active_stops_the_output(client, start, kind, topic, reason):
+    start(robot_description_file=PENDULUM)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    client.node.create_publisher(kind, topic, 1)
+    client.until(client.output_is('FAULT'), publish, timeout=10.0)
+    assert client.outputs[-1].reason.startswith(reason)
+    assert client.commands[-1][1] == [0.0]
+    assert f'refused: {reason}' in client.enable(True, publish).message
+
+
+def test_a_controller_with_another_order_of_joints_is_refused(client, start):
+    arm = RobotModel.from_urdf(ARM7)
+    start(robot_description_file=ARM7)
+    client.record_commands()
+    client.node.declare_parameter('interface_name', 'effort')
+    client.node.declare_parameter('joints', sorted(arm.joint_names))
+
+    def publish():
+        client.publish(arm.joint_names, arm.neutral_position)
+    client.until_heard(publish)
+    answer = client.enable(True, publish)
+    assert not answer.success
+    assert 'refused: /test_client has another order of the joints' in answer.message
+    assert f'[{", ".join(sorted(arm.joint_names))}]' in answer.message
+    assert f'[{", ".join(arm.joint_names)}]' in answer.message
+    client.node.set_parameters([RosParameter('joints', value=list(arm.joint_names))])
+    enabled(client, publish)
 
 
 def test_without_a_robot_enabling_is_refused_and_disabling_is_answered(client, start):

@@ -26,6 +26,11 @@ def measured(names, q):
     return ['unknown', *reversed(names)], [9.9, *reversed(list(q))]
 
 
+def assert_same(actual, expected):
+    """Compare two answers: one may come from machine code, the other from the general kernel."""
+    np.testing.assert_allclose(actual, expected, rtol=1e-12, atol=1e-13)
+
+
 def test_gravity_torque_is_by_name_whatever_the_order(client, start, arm):
     start(robot_description_file=ARM7)
     torques = client.listen(JointState, '/dynamics_node/gravity_torque')
@@ -34,7 +39,7 @@ def test_gravity_torque_is_by_name_whatever_the_order(client, start, arm):
     client.until(lambda: torques, lambda: client.publish(names, positions))
     assert tuple(torques[-1].name) == arm.joint_names
     np.testing.assert_array_equal(torques[-1].position, q)
-    np.testing.assert_array_equal(torques[-1].effort, arm.gravity_torque(q))
+    assert_same(torques[-1].effort, arm.gravity_torque(q))
     stamp = torques[-1].header.stamp
     assert stamp.sec > 0
 
@@ -42,7 +47,7 @@ def test_gravity_torque_is_by_name_whatever_the_order(client, start, arm):
         client.publish(arm.joint_names, q)
     torques.clear()
     client.until(lambda: len(torques) > 2, forward)
-    np.testing.assert_array_equal(torques[-1].effort, arm.gravity_torque(q))
+    assert_same(torques[-1].effort, arm.gravity_torque(q))
 
 
 def test_partial_messages_are_merged_and_nothing_is_computed_before_all_joints_came(
@@ -59,7 +64,7 @@ def test_partial_messages_are_merged_and_nothing_is_computed_before_all_joints_c
         client.publish(arm.joint_names[:5], q[:5])
         client.publish(arm.joint_names[5:], q[5:])
     client.until(lambda: torques, halves)
-    np.testing.assert_array_equal(torques[-1].effort, arm.gravity_torque(q))
+    assert_same(torques[-1].effort, arm.gravity_torque(q))
 
 
 def test_chosen_joints_come_in_the_chosen_order(client, start, arm):
@@ -70,7 +75,7 @@ def test_chosen_joints_come_in_the_chosen_order(client, start, arm):
     assert tuple(torques[-1].name) == chosen
     q = arm.neutral_position
     q[[3, 1]] = -0.7, 0.5
-    np.testing.assert_array_equal(torques[-1].effort, arm.gravity_torque(q)[[3, 1]])
+    assert_same(torques[-1].effort, arm.gravity_torque(q)[[3, 1]])
 
 
 def test_dynamics_are_published_and_coriolis_is_left_out_without_velocity(client, start, arm):
@@ -83,10 +88,10 @@ def test_dynamics_are_published_and_coriolis_is_left_out_without_velocity(client
     message = received[-1]
     assert tuple(message.joint_names) == arm.joint_names
     assert message.header.frame_id == arm.tree.root
-    np.testing.assert_array_equal(np.reshape(message.mass_matrix, (8, 8)), D)
-    np.testing.assert_array_equal(np.reshape(message.coriolis_matrix, (8, 8)), C)
+    assert_same(np.reshape(message.mass_matrix, (8, 8)), D)
+    assert_same(np.reshape(message.coriolis_matrix, (8, 8)), C)
     np.testing.assert_allclose(message.coriolis_torque, C @ qd, rtol=1e-13, atol=1e-15)
-    np.testing.assert_array_equal(message.gravity_torque, G)
+    assert_same(message.gravity_torque, G)
 
     for velocity in ((), [*qd[:7], np.nan]):
         received.clear()
@@ -94,7 +99,7 @@ def test_dynamics_are_published_and_coriolis_is_left_out_without_velocity(client
                      lambda velocity=velocity: client.publish(arm.joint_names, q, velocity))
         message = received[-1]
         assert len(message.coriolis_matrix) == len(message.coriolis_torque) == 0
-        np.testing.assert_array_equal(message.gravity_torque, G)
+        assert_same(message.gravity_torque, G)
 
 
 def test_bad_joint_states_are_dropped_and_the_node_goes_on(client, start):
@@ -261,6 +266,7 @@ def test_diagnostics_tell_about_model_states_output_and_state_machine(client, st
         client.publish(['hinge'], [])
     client.until(lambda: {'rejected: not finite', 'rejected: length'} <= set(
         values('joint states')), bad, period=0.05)
+    assert int(values('joint states')['rejected']) >= 2
     client.until(lambda: statuses(received)[1]['joint states'] == 'stale: hinge')
 
     # A latched fault and what it was about.
@@ -269,35 +275,6 @@ def test_diagnostics_tell_about_model_states_output_and_state_machine(client, st
     client.until(lambda: values('output')['commands'] != '0', publish)
     client.until(lambda: values('state machine')['state'] == 'FAULT', timeout=5.0)
     assert 'stale' in values('state machine')['latched fault']
-
-
-def test_an_arm_that_runs_away_or_jumps_or_is_at_its_limit_stops_the_output(client, start):
-    # The pendulum of the test may be 20 rad/s fast and hold 20 N m; here it needs more.
-    start(robot_description_file=PENDULUM, state_timeout=0.5, effort_limits='[4.0]',
-          start_ramp=0.0, stop_ramp=0.0, effort_rate_limits='[1000.0]')
-    client.record_commands()
-
-    def at(position, velocity=0.0):
-        return lambda: client.publish(['hinge'], [position], [velocity])
-
-    def enabled():
-        client.until_heard(at(1.5))
-        assert client.enable(True, at(1.5)).success
-        client.until(client.output_is('ACTIVE'), at(1.5))
-
-    for action, reason in (
-            (at(1.5, 41.0), 'runaway: hinge at 41 (limit 20), more than 2 times'),
-            (at(-1.5), 'expected a position that the joint can have reached, got hinge from 1.5'),
-            (at(1.5 - 0.3), None), (at(1.2), 'effort above its limit for 2 s: hinge: ')):
-        if reason is None:  # a step that the joint can make in 0.01 s
-            continue
-        if 'limit for' in reason:
-            client.during(0.05, at(1.5))
-            client.until_heard(at(1.2))
-        enabled() if 'limit for' not in reason else client.enable(True, action)
-        client.until(client.output_is('FAULT'), action)
-        assert client.outputs[-1].reason.startswith(reason)
-        assert client.commands[-1][1] == [0.0]
 
 
 def test_stamps_that_cannot_be_true_make_no_torque_and_the_refusal_says_so(client, start):
@@ -318,7 +295,8 @@ def test_stamps_that_cannot_be_true_make_no_torque_and_the_refusal_says_so(clien
         client.until(lambda: len(torques) > 3, good)
     frozen = client.node.get_clock().now().nanoseconds * 1e-9
     for bad in (stamped(-5.0), stamped(5.0), stamped(frozen, moves=False)):
-        client.until(lambda: 'no joint state' in client.enable(True, bad).message, bad)
+        client.during(0.2, bad)  # longer than a state is fresh
+        assert 'no joint state' in client.enable(True, bad).message
         torques.clear()
         client.during(0.2, bad)
         assert torques == []

@@ -43,6 +43,14 @@ def test_all_wrong_values_are_named_at_once():
         check_all({'state_timeout': 0, 'start_ramp': -1})
 
 
+def test_the_accepted_values_are_said_in_words():
+    said = {parameter.name: parameter.constraints() for parameter in PARAMETERS}
+    assert said['state_timeout'] == 'a number > 0 and <= 10'
+    assert said['effort_limits'] == 'a finite number > 0'
+    assert said['stop_behavior'] == 'one of ramp_to_zero, hold, zero'
+    assert said['joints'] == said['publish_dynamics'] == ''
+
+
 def test_integers_are_taken_for_doubles():
     assert check_all({'effort_limits': [87, 12]})['effort_limits'] == (87.0, 12.0)
 

@@ -1,0 +1,126 @@
+"""Joint states from the topic: what is handed on, what is counted, what is warned about."""
+
+from types import SimpleNamespace
+
+from dynamics_node import RobotModel
+from dynamics_node.output import OutputChannel, StampTolerance
+from dynamics_node.output.channel import OutputSettings
+from dynamics_node.ros.robot import Robot
+from dynamics_node.ros.state_input import StateInput
+import pytest
+from sensor_msgs.msg import JointState
+from support.processes import Client
+from support.robots import PENDULUM
+
+LIMITED = PENDULUM.read_text().replace('type="continuous"', 'type="revolute"').replace(
+    '<limit ', '<limit lower="-1" upper="1" ')
+
+
+class Receiver:
+    """A node with nothing but the input, in this process."""
+
+    def __init__(self, raw):
+        self.client = Client('receiver')
+        self.robot = Robot(RobotModel.from_urdf(LIMITED), ())
+        # A busy machine may take its time from one process to the other.
+        self.robot.buffer.tolerance = StampTolerance(5.0)
+        self.channel = OutputChannel(OutputSettings(0.5, 0.0, 0.0, 'ramp_to_zero'))
+        self.received, self.errors, self.warnings = [], [], []
+        node = self.client.node
+        node.destroy_publisher(self.client.states)
+        self.input = StateInput(node, {'allow_several_state_publishers': False},
+                                lambda: self.robot, self.channel, self, raw)
+        self.input.logger = SimpleNamespace(warning=self.warnings.append, info=lambda _: None,
+                                            error=self.errors.append)
+
+    def on_state(self, robot, now, stamp):
+        """Note a usable state."""
+        self.received.append((list(robot.buffer.position), stamp))
+
+    def on_internal_error(self, message):
+        """Note an error of the callback."""
+        self.errors.append(message)
+
+    def spin(self):
+        self.client.executor.spin_once(timeout_sec=0.0)
+
+
+@pytest.fixture(params=[True, False], ids=['raw', 'rclpy'])
+def receiver(request):
+    receiver = Receiver(request.param)
+    yield receiver
+    receiver.client.close()
+
+
+def at(client, *positions):
+    """Return an action that publishes states."""
+    def publish():
+        for position in positions:
+            client.publish(['hinge'], [position])
+    return publish
+
+
+def until_received(client, receiver, *positions):
+    """Publish until something was received, then wait until nothing is on its way."""
+    receiver.received.clear()
+    both = at(client, *positions)
+    client.until(lambda: receiver.received, lambda: (both(), receiver.spin()))
+    client.during(0.05, receiver.spin)
+    receiver.received.clear()
+
+
+def test_the_newest_state_wins_and_those_before_it_are_counted(client, receiver):
+    until_received(client, receiver, 0.0)
+    assert receiver.input.count_publishers() == 1
+    at(client, 0.0)()
+    client.until(lambda: receiver.received, receiver.spin)
+    before = receiver.input.skipped
+    at(client, *(0.001 * i for i in range(9)))()
+    client.during(0.02)
+    client.until(lambda: receiver.received[-1][0] == [0.008], receiver.spin)
+    assert len(receiver.received) == 2
+    assert receiver.input.skipped - before == 8
+
+
+def test_a_position_beyond_its_limits_is_computed_with_and_warned_about(client, receiver):
+    until_received(client, receiver, 1.25)
+    assert receiver.warnings == ['beyond the position limits: hinge at 1.25 (limits -1 to 1)']
+
+
+def test_what_is_dropped_is_warned_about_once_a_second_by_its_kind(client, receiver):
+    until_received(client, receiver, 0.0)
+
+    def bad():
+        client.publish(['hinge'], [])
+        client.until(lambda: receiver.robot.buffer.rejected['length'], receiver.spin)
+        client.publish(['hinge', 'hinge'], [0.0, 0.0])
+        client.until(lambda: receiver.robot.buffer.rejected['name twice'], receiver.spin)
+    for _ in range(3):
+        bad()
+    assert [text.split(':')[0] for text in receiver.warnings] == ['joint state dropped'] * 2
+    assert receiver.received == []
+
+
+def test_an_exception_in_the_callback_is_told_and_the_next_state_is_taken(client, receiver):
+    until_received(client, receiver, 0.0)
+    receiver.robot.buffer.runaway = lambda: 1 / 0
+    client.until(lambda: receiver.errors, lambda: (at(client, 0.0)(), receiver.spin()))
+    assert any('internal error in ' in text and 'division by zero' in text
+               for text in receiver.errors)
+    del receiver.robot.buffer.runaway
+    until_received(client, receiver, 0.0)
+
+
+def test_a_stamp_is_handed_on_and_a_missing_one_is_the_arrival(client, receiver):
+    until_received(client, receiver, 0.0)
+    message = JointState(name=['hinge'], position=[0.0])
+    message.header.stamp = client.node.get_clock().now().to_msg()
+    client.states.publish(message)
+    client.until(lambda: receiver.received, receiver.spin)
+    assert receiver.received[-1][1] == message.header.stamp
+    message.header.stamp.sec = message.header.stamp.nanosec = 0
+    before = client.node.get_clock().now().to_msg()
+    client.states.publish(message)
+    client.until(lambda: len(receiver.received) == 2, receiver.spin)
+    stamp = receiver.received[-1][1]
+    assert (stamp.sec, stamp.nanosec) >= (before.sec, before.nanosec)
