@@ -82,7 +82,8 @@ def _figures(soak, client):
     for what, unit in (('memory', ' MB'), ('files', ''), ('threads', '')):
         before, after = (vitals.get(what, math.nan) for vitals in (soak.before, soak.after))
         digits = 1 if what == 'memory' else 0
-        yield f'{what} of the node', f'{before:.{digits}f} -> {after:.{digits}f}{unit}'
+        earlier = '' if math.isnan(before) else f'{before:.{digits}f} -> '
+        yield f'{what} of the node', f'{earlier}{after:.{digits}f}{unit}'
 
 
 def _faults(soak):

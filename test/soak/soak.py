@@ -13,8 +13,9 @@ from .latency import Latency
 from .line import stamp_of
 from .rig import NEAR
 
-# The share of the time after which memory, files and threads must not grow any more.
-WARM_UP = 0.1
+# The share of the time after which memory, files and threads must not grow any more, but not
+# before so many seconds: until then the node may still load its machine code.
+WARM_UP, SHORTEST_WARM_UP = 0.1, 30.0
 # Calm between two faults, s.
 SHORTEST_CALM, LONGEST_CALM = 0.3, 2.0
 # For a fault to be noticed, and its stop to end, on a busy machine, s.
@@ -50,7 +51,8 @@ class Soak:
     books : Books
     latency : Latency
     before, after : dict
-        Vitals of the node; see `RigProcesses.vitals`.
+        Vitals of the node, see `RigProcesses.vitals`; no `before` in a run shorter than the
+        warm-up.
     rejected : Counter
         Joint states that the node has refused, by kind.
     duration : float
@@ -96,7 +98,7 @@ class Soak:
         self._open_books()
         rig.float()
         while (elapsed := time.monotonic() - begin) < seconds:
-            if not self.before and elapsed >= WARM_UP * seconds:
+            if not self.before and elapsed >= max(WARM_UP * seconds, SHORTEST_WARM_UP):
                 self.before = rig.processes.vitals('node')
             self._one_fault(self._choose())
             self._settle()
