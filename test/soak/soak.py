@@ -17,6 +17,7 @@ from .rig import NEAR
 # before so many seconds: until then the node may still load its machine code.
 WARM_UP, SHORTEST_WARM_UP = 0.1, 30.0
 # Calm between two faults, s.
+CALM = 'none: calm'
 SHORTEST_CALM, LONGEST_CALM = 0.3, 2.0
 # For a fault to be noticed, and its stop to end, on a busy machine, s.
 NOTICED_WITHIN = 10.0
@@ -73,7 +74,7 @@ class Soak:
             Told of every fault that did not go well.
 
         """
-        self.tallies = {fault.name: Tally() for fault in FAULTS}
+        self.tallies = {name: Tally() for name in [CALM, *(fault.name for fault in FAULTS)]}
         self.books, self.latency = Books(), Latency()
         self.before = self.after = {}
         self.rejected = Counter()
@@ -124,7 +125,7 @@ class Soak:
 
     def _one_fault(self, fault):
         rig, client = self._rig, self._client
-        rig.during(self._rng.uniform(SHORTEST_CALM, LONGEST_CALM))
+        self._calm()
         if fault.breaks_books:
             self._close_books()
             rig.float()
@@ -156,9 +157,26 @@ class Soak:
         client.settle()
         if client.judge.count > accused:
             failure = failure or 'wrong commands, see below'
+        self._note(tally, fault.name, failure)
+
+    def _calm(self):
+        # What stops without a fault has to be explained, too.
+        client, tally = self._client, self.tallies[CALM]
+        tally.injected += 1
+        changes = len(client.outputs)
+        self._rig.during(self._rng.uniform(SHORTEST_CALM, LONGEST_CALM))
+        failure = ''
+        if len(client.outputs) > changes:
+            failure = f'expected ACTIVE, got {client.output}: {client.outputs[-1].reason}'
+        self._note(tally, CALM, failure)
+        if failure:
+            self._rig.until(lambda: client.output == 'FAULT', NOTICED_WITHIN)
+            self._rig.float()
+
+    def _note(self, tally, name, failure):
         if failure:
             tally.failures.append(failure)
-            self._say(f'{client.now:.1f} s, {fault.name}: {failure}')
+            self._say(f'{self._client.now:.1f} s, {name}: {failure}')
         else:
             tally.survived += 1
 
