@@ -91,10 +91,11 @@ def _faults(soak):
     table.add_column('fault', no_wrap=True)
     table.add_column('injected', justify='right')
     table.add_column('survived', justify='right')
+    table.add_column('line paused by itself', justify='right')
     for name, tally in soak.tallies.items():
         if tally.injected:
-            table.add_row(name, str(tally.injected), str(tally.survived))
+            table.add_row(name, str(tally.injected), str(tally.survived), str(tally.paused))
     table.add_section()
-    table.add_row('all', str(sum(tally.injected for tally in soak.tallies.values())),
-                  str(sum(tally.survived for tally in soak.tallies.values())))
+    table.add_row('all', *(str(sum(getattr(tally, what) for tally in soak.tallies.values()))
+                           for what in ('injected', 'survived', 'paused')))
     return table

@@ -19,6 +19,8 @@ FULL_RATE = 0.1
 NEAR = 0.3
 # An arm that floats and is slower is at rest, rad/s.
 AT_REST = 0.01
+# To enable: a machine that is busy enough to stop all may do so while the effort goes up.
+ATTEMPTS = 5
 COMMAND_TOPIC = '/forward_effort_controller/commands'
 
 
@@ -125,9 +127,13 @@ class Rig:
         self.start_missing()
         self.client.set_fault('none')
         self.catch()
-        self.enable()
-        self.until(lambda: self.client.output == 'ACTIVE')
-        self.release()
+        for _ in range(ATTEMPTS):
+            self.enable()
+            self.until(lambda: self.client.output in ('ACTIVE', 'FAULT'))
+            if self.client.output == 'ACTIVE':
+                self.release()
+                return
+        raise AssertionError(f'not ACTIVE after {ATTEMPTS} attempts: {self.explain()}')
 
     def release(self):
         """Release the brakes of an arm that is held."""
@@ -144,10 +150,11 @@ class Rig:
 
     def enable(self, timeout=30.0):
         """Enable the output, asking again until it is accepted: others need time to be gone."""
-        end = time.monotonic() + timeout
+        end, changes = time.monotonic() + timeout, len(self.client.outputs)
         while not (answer := self.client.enable(True)).success:
             assert time.monotonic() < end, answer.message
             self.during(0.1)
+        self.until(lambda: len(self.client.outputs) > changes or self.client.output == 'ACTIVE')
 
     def explain(self):
         """Return what may be the cause of something unexpected, for an error message."""

@@ -1,6 +1,6 @@
 """The soak itself: one fault after the other, at random moments, and the arm brought back."""
 
-from collections import Counter
+from collections import Counter, deque
 from dataclasses import dataclass, field
 import time
 
@@ -8,7 +8,7 @@ from rclpy.qos import qos_profile_sensor_data, QoSProfile
 from sensor_msgs.msg import JointState
 
 from .books import Account, Books
-from .faults import FAULTS
+from .faults import FAULTS, STALE, STATE_TIMEOUT
 from .latency import Latency
 from .line import stamp_of
 from .rig import NEAR
@@ -16,6 +16,8 @@ from .rig import NEAR
 # The share of the time after which memory, files and threads must not grow any more, but not
 # before so many seconds: until then the node may still load its machine code.
 WARM_UP, SHORTEST_WARM_UP = 0.1, 30.0
+# States of the line: some seconds, and a flood as well.
+REMEMBERED = 20_000
 # Calm between two faults, s.
 CALM = 'none: calm'
 SHORTEST_CALM, LONGEST_CALM = 0.3, 2.0
@@ -31,6 +33,8 @@ class Tally:
     Attributes
     ----------
     injected, survived : int
+    paused : int
+        How often the line was silent by itself meanwhile, see `Soak`.
     failures : list of str
         What was not as it has to be, for people.
 
@@ -38,12 +42,17 @@ class Tally:
 
     injected: int = 0
     survived: int = 0
+    paused: int = 0
     failures: list = field(default_factory=list)
 
 
 class Soak:
     """
     Hurts a rig at random and looks whether all stays as it has to be.
+
+    A machine that is busy with other things may stop robot or line for longer than the node's
+    timeout. Then the node has to stop, too, and that is no failure of it; whether it was so tell
+    the times at which the line has written.
 
     Attributes
     ----------
@@ -81,6 +90,7 @@ class Soak:
         self.duration = 0.0
         self._rig, self._client, self._rng, self._say = rig, rig.client, rng, say
         self._fresh = []
+        self._written = deque(maxlen=REMEMBERED)
         node, client = rig.client.node, rig.client
         # As bytes, of which only the stamps are read: there are a thousand in a second.
         node.create_subscription(JointState, 'joint_states', self._on_state,
@@ -142,13 +152,13 @@ class Soak:
                     rig.during(self._rng.uniform(fault.longest / 3, fault.longest))
             except AssertionError:
                 failure = f'expected FAULT, got {client.output}'
+        rig.during(0.1)
         newest = client.outputs[-1]
         if fault.stops and not failure and fault.reason not in newest.reason:
             failure = f'expected a reason with {fault.reason!r}, got {newest.reason!r}'
-        if not fault.stops:
-            rig.during(0.1)
-            if len(client.outputs) > changes:
-                failure = f'expected ACTIVE, got {newest.name}: {newest.reason}'
+        if not fault.stops and len(client.outputs) > changes:
+            failure = f'expected ACTIVE, got {newest.name}: {newest.reason}'
+        is_pause = bool(failure) and self._has_paused(changes)
         rig.float()
         self._bring_back()
         if fault.breaks_books:
@@ -156,8 +166,8 @@ class Soak:
             rig.float()
         client.settle()
         if client.judge.count > accused:
-            failure = failure or 'wrong commands, see below'
-        self._note(tally, fault.name, failure)
+            failure, is_pause = failure or 'wrong commands, see below', False
+        self._note(tally, fault.name, failure, is_pause)
 
     def _calm(self):
         # What stops without a fault has to be explained, too.
@@ -168,13 +178,28 @@ class Soak:
         failure = ''
         if len(client.outputs) > changes:
             failure = f'expected ACTIVE, got {client.output}: {client.outputs[-1].reason}'
-        self._note(tally, CALM, failure)
+        self._note(tally, CALM, failure, bool(failure) and self._has_paused(changes))
         if failure:
             self._rig.until(lambda: client.output == 'FAULT', NOTICED_WITHIN)
             self._rig.float()
 
-    def _note(self, tally, name, failure):
-        if failure:
+    def _has_paused(self, changes):
+        # Of a stop for silence: whether the line was silent, and nobody had asked it to be. What
+        # was written shortly before the stop cannot have been read, so that does not count.
+        client = self._client
+        stops = [(time, output.reason) for time, output in zip(
+            client.output_times[changes:], client.outputs[changes:]) if output.name == 'STOPPING']
+        if not stops or STALE not in stops[0][1]:
+            return False
+        end = stops[0][0]
+        return not any(end - 0.9 * STATE_TIMEOUT < time < end - 0.1 * STATE_TIMEOUT
+                       for time in self._written)
+
+    def _note(self, tally, name, failure, is_pause):
+        if is_pause:
+            tally.paused += 1
+            self._say(f'{self._client.now:.1f} s, {name}: the line paused by itself')
+        elif failure:
             tally.failures.append(failure)
             self._say(f'{self._client.now:.1f} s, {name}: {failure}')
         else:
@@ -213,8 +238,12 @@ class Soak:
     # -----------------------------------------------------------------------------------------
 
     def _on_state(self, data, info):
-        if len(data) > 12:
-            self.latency.sent(self._client.time_of(info['source_timestamp']), stamp_of(data))
+        if len(data) < 12:  # random bytes
+            return
+        written, stamp = self._client.time_of(info['source_timestamp']), stamp_of(data)
+        self.latency.sent(written, stamp)
+        if abs(written - self._client.time_of(stamp)) < 0.5 * STATE_TIMEOUT:
+            self._written.append(written)
 
     def _on_answer(self, data, info):
         self.latency.answer(self._client.time_of(info['source_timestamp']), stamp_of(data))
