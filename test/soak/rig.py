@@ -150,8 +150,12 @@ class Rig:
 
     def enable(self, timeout=30.0):
         """Enable the output, asking again until it is accepted: others need time to be gone."""
-        end, changes = time.monotonic() + timeout, len(self.client.outputs)
-        while not (answer := self.client.enable(True)).success:
+        end = time.monotonic() + timeout
+        while True:
+            changes = len(self.client.outputs)
+            answer = self.client.enable(True)
+            if answer.success:
+                break
             assert time.monotonic() < end, answer.message
             self.during(0.1)
         self.until(lambda: len(self.client.outputs) > changes or self.client.output == 'ACTIVE')
