@@ -121,7 +121,7 @@ class CommandOutput:
 
     def begin(self, notes=()):
         """
-        Switch the output on, from zero; whether it may be has been found out before.
+        Switch the output on; whether it may be has been found out before.
 
         Parameters
         ----------
