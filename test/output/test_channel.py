@@ -5,6 +5,7 @@ import math
 from dynamics_node.output import OutputChannel
 from dynamics_node.output.channel import (
     LONGEST_SATURATION,
+    MAX_RESTARTS,
     OutputSettings,
     SHORTEST_LOOK,
     STOP_STEP,
@@ -98,6 +99,15 @@ def test_enabling_after_hold_starts_from_what_was_held():
     np.testing.assert_allclose(unit.on_effort(5.0, TORQUE / 2), TORQUE)
     np.testing.assert_allclose(unit.on_effort(5.25, TORQUE / 2), 0.75 * TORQUE)
     np.testing.assert_allclose(unit.on_effort(5.5, TORQUE / 2), TORQUE / 2)
+
+
+def test_what_was_held_belongs_to_its_joints():
+    unit = active(stop_behavior='hold')
+    unit.stop(1.0, 'disabled on request')
+    stopped(unit, 1.0)
+    unit.set_limiter(LIMITS, RATES, np.ones(2), ('of another', 'robot'))
+    unit.enable(5.0)
+    np.testing.assert_array_equal(unit.on_effort(5.0, TORQUE), [0, 0])
 
 
 def test_a_stale_state_stops_and_latches_with_both_numbers():
@@ -225,6 +235,29 @@ def test_a_restart_goes_from_the_last_command_to_the_new_torque_by_the_start_ram
     assert unit.machine.name == 'ACTIVE'
 
 
+def test_restarts_that_let_no_start_end_are_a_fault():
+    unit, now = active(), 1.0
+
+    def restart(times, pause):
+        nonlocal now
+        for _ in range(times):
+            unit.restart(now, 'the clock went back')
+            for step in np.arange(0.0, pause, 0.01):
+                unit.on_effort(now + step, -TORQUE)
+            now += pause
+    restart(2 * MAX_RESTARTS, 0.6)
+    assert unit.machine.name == 'ACTIVE'
+    restart(MAX_RESTARTS, 0.1)
+    assert unit.machine.name == 'STARTING'
+    restart(1, 0.1)
+    assert unit.machine.name == 'STOPPING'
+    assert unit.machine.fault == ('the clock went back, 4 times before the start ramp was over')
+    stopped(unit, now)
+    assert unit.enable(now + 2.0)
+    unit.restart(now + 2.0, 'the clock went back')
+    assert unit.machine.name == 'STARTING'
+
+
 def test_a_fault_of_the_arm_stops_an_output_that_is_on_and_only_that():
     unit = channel()
     unit.fault(0.0, 'runaway')
@@ -264,4 +297,12 @@ def test_an_arm_that_must_not_be_driven_is_not_held_either():
     unit = active(stop_behavior='hold')
     unit.fault(1.0, 'runaway')
     np.testing.assert_array_equal(stopped(unit, 1.0)[-1], [0, 0])
+    assert (unit.machine.name, unit.machine.reason) == ('FAULT', 'runaway')
+
+
+def test_a_fault_takes_away_what_a_stop_has_just_begun_to_hold():
+    unit = active(stop_behavior='hold')
+    unit.stop(1.0, 'disabled on request')
+    unit.fault(1.005, 'runaway')
+    np.testing.assert_array_equal(stopped(unit, 1.01)[-1], [0, 0])
     assert (unit.machine.name, unit.machine.reason) == ('FAULT', 'runaway')
