@@ -209,6 +209,21 @@ class OutputChannel:
         self._watch_saturation(now)
         return command
 
+    def published(self, now):
+        """
+        Take note that the last command has gone out.
+
+        The next step is limited by the time since then, and not since its state arrived: however
+        late a command goes out, the next one keeps the rate limit as others see it.
+
+        Parameters
+        ----------
+        now : float
+            s.
+
+        """
+        self._last_time = now
+
     def tick(self, now, state_age):
         """
         Watch the age of the joint state, and walk the stop to its end.

@@ -170,6 +170,7 @@ class CommandOutput:
     def _publish(self, command):
         self._message.data = to_field(command)
         self._publisher.publish(self._message)
+        self.channel.published(time.monotonic())
         self.commands += 1
 
     def _changed(self, state, reason):

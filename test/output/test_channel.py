@@ -63,6 +63,18 @@ def test_the_start_ramps_from_zero_to_the_torque():
     assert unit.machine.name == 'ACTIVE'
 
 
+def test_the_rate_limit_counts_from_when_the_last_command_went_out():
+    unit = channel(start_ramp=0.0)
+    unit.enable(0.0)
+    np.testing.assert_allclose(unit.on_effort(0.01, TORQUE), [1.0, -0.5])
+    unit.published(0.018)
+    np.testing.assert_allclose(unit.on_effort(0.02, TORQUE), [1.2, -0.6])
+    unit.published(0.03)
+    unit.stop(0.03, 'disabled on request')
+    unit.tick(0.03, 0.0)
+    np.testing.assert_allclose(unit.limiter.last, [1.2, -0.6])
+
+
 def test_a_stop_ramps_to_zero_and_ends_with_zeros():
     unit = active()
     unit.stop(1.0, 'disabled on request')
