@@ -1,5 +1,7 @@
 """Fixtures of the tests over DDS: everything started here is also ended here."""
 
+import contextlib
+
 import pytest
 
 
@@ -16,12 +18,10 @@ def client():
 def start():
     """Return a function that starts the node with parameters."""
     from support.processes import NodeProcess
-    processes = []
+    with contextlib.ExitStack() as stack:  # which ends all, also when the end of one goes wrong
+        def start(*remappings, **parameters):
+            process = NodeProcess(*remappings, **parameters)
+            stack.callback(process.close)
+            return process
 
-    def start(*remappings, **parameters):
-        processes.append(NodeProcess(*remappings, **parameters))
-        return processes[-1]
-
-    yield start
-    for process in processes:
-        process.close()
+        yield start

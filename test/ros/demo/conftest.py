@@ -20,7 +20,8 @@ from support.domains import claim
 
 ARM7 = Path(__file__).resolve().parents[3] / 'config' / 'robots' / 'arm7.urdf'
 SERVICES = {'set_brakes': SetBool, 'reset': Trigger, 'push': Trigger}
-PATIENCE = 15.0  # [s]
+# For what never comes: on a busy machine a process may take long to start. [s]
+PATIENCE = 60.0
 
 
 def environment():
@@ -53,7 +54,11 @@ class Robot:
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         self.states, self.description = [], None
-        self._connect()
+        try:
+            self._connect()
+        except BaseException:
+            self._leave()  # or it would be heard by the next robot in its domain
+            raise
 
     def _connect(self):
         """Create the endpoints and wait for those of the robot."""
@@ -118,6 +123,9 @@ class Robot:
         """Bring the robot back to its start pose, on its brakes, without efforts."""
         assert self.call('reset').success
         self.wait_for(lambda: self.call('set_brakes', data=True).success)
+        # States of the last test may still be in the queue of a machine that is busy.
+        rests = self.node.get_clock().now().nanoseconds * 1e-9
+        self.wait_for(lambda: self.now > rests)
 
     def close(self):
         """Press Ctrl-C; return the exit code and what the process has printed."""
@@ -125,11 +133,17 @@ class Robot:
         try:
             output, _ = self.process.communicate(timeout=PATIENCE)
         finally:
-            self.process.kill()
-            self.executor.shutdown()
-            self.node.destroy_node()
-            self.context.try_shutdown()
+            self._leave()
         return self.process.returncode, output
+
+    def _leave(self):
+        """End the process for certain, and leave ROS."""
+        self.process.kill()
+        self.process.wait()
+        self.process.stdout.close()
+        self.executor.shutdown()
+        self.node.destroy_node()
+        self.context.try_shutdown()
 
 
 def stamp(state):

@@ -58,8 +58,7 @@ def test_released_without_a_command_it_falls(robot):
     """Far, and downwards."""
     before = robot.positions()
     assert robot.call('set_brakes', data=False).success
-    robot.spin_for(0.6)
-    assert largest_way(before, robot.positions()) > 20.0
+    robot.wait_for(lambda: largest_way(before, robot.positions()) > 20.0)
     assert robot.position('shoulder_pitch') > before['shoulder_pitch']
 
 
@@ -101,8 +100,7 @@ def test_a_push_moves_the_held_arm(robot, arm7_text):
     robot.call('set_brakes', data=False)
     answer = robot.call('push')
     assert answer.success and ' N for 0.25 s' in answer.message
-    robot.spin_for(0.5)
-    assert largest_way(before, robot.positions()) > 5.0
+    robot.wait_for(lambda: largest_way(before, robot.positions()) > 5.0)
 
 
 def test_a_push_on_the_brakes_is_refused(robot):
