@@ -2,7 +2,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench soak lint build shell lock clean
+.PHONY: help demo test bench fuzz soak lint build shell lock clean
 
 # ROBOT, VIEW and PYTHON reach the scripts through the environment.
 
@@ -17,6 +17,9 @@ test: ## All tests; ARGS='...': arguments of pytest
 
 bench: ## Speed beside other libraries, into docs/benchmarks.md; ARGS='...': see python -m benchmarks -h
 	@bash scripts/bench.sh $(ARGS)
+
+fuzz: ## 100 000 broken descriptions and joint states; ARGS='...': see python -m fuzz -h
+	@bash scripts/fuzz.sh $(ARGS)
 
 soak: ## The simulated arm for 10 minutes, faults at random; ARGS='...': see python -m soak -h
 	@bash scripts/soak.sh $(ARGS)

@@ -1,4 +1,6 @@
-"""The exceptions of this package: one tree, each carrying its data."""
+"""The exceptions of this package: one tree, each carrying its data; how they show a text."""
+
+_SHOWN = 60
 
 
 class DynamicsError(Exception):
@@ -45,3 +47,21 @@ class InertiaError(DynamicsError, ValueError):
 
 class SingularMassMatrixError(DynamicsError, ArithmeticError):
     """The mass matrix is not positive definite, so accelerations are not defined."""
+
+
+def quoted(text):
+    """
+    Return a text from outside as it may stand in an error message or a log.
+
+    Parameters
+    ----------
+    text : str or None
+
+    Returns
+    -------
+    str
+        In quotes; line breaks and what cannot be printed as escapes, shortened if it is long.
+
+    """
+    text = str(text)
+    return repr(text if len(text) <= _SHOWN else text[:_SHOWN - 3] + '...')

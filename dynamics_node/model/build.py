@@ -6,6 +6,7 @@ from .mimic import resolve_mimic
 from .tree import KinematicTree, LinkFrame, PRISMATIC, REVOLUTE
 from ..errors import RobotDescriptionError
 from ..inertia import combine
+from ..urdf.attributes import LARGEST
 from ..urdf.inertial import link_pseudo_inertia
 
 
@@ -25,7 +26,7 @@ def build_tree(description):
     Raises
     ------
     RobotDescriptionError
-        If numbers are so large that products of them are not finite.
+        If mimic joints multiply each other to numbers that no robot has.
 
     References
     ----------
@@ -95,13 +96,15 @@ def _lumped(description, links, count):
 
 
 def _refuse_overflow(tree):
-    # Each number of the description is finite, but their products need not be.
-    for name in ('inertia', 'placement', 'multiplier', 'offset'):
-        array = getattr(tree, name)
-        wrong = [tree.body_names[i] for i in range(len(array)) if not np.isfinite(array[i]).all()]
-        if wrong:
-            raise RobotDescriptionError([f'{name} behind joint {", ".join(wrong)} is not finite: '
-                                         'numbers of the description are too large'])
+    # No number of the description is larger, but a chain of mimic joints multiplies what its
+    # joints say, and beyond that the dynamics would not be finite.
+    problems = [f'joint {name}: {what} of all joints that it mimics in turn: expected at most '
+                f'{LARGEST:g}, got {value:g}'
+                for what in ('multiplier', 'offset')
+                for name, value in zip(tree.body_names, getattr(tree, what), strict=True)
+                if not abs(value) <= LARGEST]
+    if problems:
+        raise RobotDescriptionError(problems)
 
 
 def _massless(moving, inertia):

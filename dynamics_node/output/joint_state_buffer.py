@@ -8,6 +8,7 @@ import numpy as np
 from .motion_limits import MotionLimits
 from .rejected import RejectedStateError
 from .stamps import StampTolerance
+from ..errors import quoted
 
 # More names than any robot has: such a message is refused before its arrays are touched.
 MAX_NAMES = 4096
@@ -157,6 +158,9 @@ class JointStateBuffer:
         self._check_steps(now, positions, stamp)
         position, velocity, time, stamps = self._position, self._velocity, self._time, self._stamp
         has_velocities = len(velocities) > 0
+        if any(map(math.isinf, velocities)):
+            # No joint is that fast: it is not known how fast it is.
+            velocities = [math.nan if math.isinf(value) else value for value in velocities]
         for source, target in pairs:
             position[target] = positions[source]
             velocity[target] = velocities[source] if has_velocities else math.nan
@@ -225,7 +229,7 @@ class JointStateBuffer:
             twice = sorted(name for name, count in Counter(names).items() if count > 1)
             # Anybody may have written them: short, and without what a terminal would obey.
             raise RejectedStateError('name twice', 'expected each joint once, got twice: '
-                                     + ', '.join(repr(name[:40]) for name in twice[:5]))
+                                     + ', '.join(map(quoted, twice[:5])))
         self._pairs = [(i, self._index[name]) for i, name in enumerate(names)
                        if name in self._index]
         needed = set(self._needed)

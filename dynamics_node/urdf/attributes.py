@@ -3,8 +3,16 @@
 import math
 import re
 
-# What URDF writes as a number: no 'nan', no 'inf', no '1_0', no hexadecimal.
-_NUMBER = re.compile(r'[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?')
+from ..errors import quoted
+
+# What URDF writes as a number: no 'nan', no 'inf', no '1_0', no hexadecimal. No two repetitions
+# that could share the same digits: a long text would be tried in every division.
+_NUMBER = re.compile(r'[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?')
+# XML's blanks; Python knows others.
+_BLANKS = ' \t\r\n'
+
+# No robot has larger numbers, and products of a few of them are still finite.
+LARGEST = 1e30
 
 # What a limit may be instead, and then counts as none.
 _UNLIMITED = re.compile(r'[+-]?(inf|infinity|nan|1e999)|', re.IGNORECASE)
@@ -26,6 +34,8 @@ _JOINT_NUMBERS = {
     'mimic': [('multiplier', 1, False), ('offset', 1, False)],
 }
 _INERTIAL_PARTS = ('inertial/mass', 'inertial/inertia')
+# A position limit that large is how others write none; an axis has its own bounds.
+_MAY_BE_LARGER = {'limit', 'axis'}
 
 
 def is_number(text):
@@ -43,7 +53,7 @@ def is_number(text):
         False for 'nan', 'inf', '1_0', '0x1', '1e999' and the like.
 
     """
-    return bool(_NUMBER.fullmatch(text.strip())) and math.isfinite(float(text))
+    return bool(_NUMBER.fullmatch(text.strip(_BLANKS))) and math.isfinite(float(text))
 
 
 def number_problems(robot):
@@ -63,13 +73,13 @@ def number_problems(robot):
     """
     problems = []
     for link in robot.findall('link'):
-        where = f"link '{link.get('name')}'"
+        where = f'link {quoted(link.get("name"))}'
         problems += _in_element(link, where, _LINK_NUMBERS)
         if link.find('inertial') is not None:
             problems += [f'{where}: <inertial> has no <{part.split("/")[1]}>'
                          for part in _INERTIAL_PARTS if link.find(part) is None]
     for joint in robot.findall('joint'):
-        where = f"joint '{joint.get('name')}'"
+        where = f'joint {quoted(joint.get("name"))}'
         problems += _in_element(joint, where, _JOINT_NUMBERS)
         problems += _soft_limits(joint, where)
     return problems
@@ -78,10 +88,10 @@ def number_problems(robot):
 def _soft_limits(joint, where):
     limit = joint.find('limit')
     given = {} if limit is None else limit.attrib
-    return [f"{where}: <limit> {name}: expected a number, got '{given[name][:60]}'"
+    return [f'{where}: <limit> {name}: expected a number, got {quoted(given[name])}'
             for name in ('effort', 'velocity')
             if name in given and not is_number(given[name]) and not _UNLIMITED.fullmatch(
-                given[name].strip())]
+                given[name].strip(_BLANKS))]
 
 
 def _in_element(parent, where, table):
@@ -100,8 +110,11 @@ def _in_attribute(element, where, name, count, required):
     text = element.get(name)
     if text is None:
         return [f'{where} is missing'] if required else []
-    parts = text.split()
-    if len(parts) == count and all(is_number(part) for part in parts):
+    parts = [part for part in re.split(f'[{_BLANKS}]+', text) if part]
+    if len(parts) != count or not all(is_number(part) for part in parts):
+        expected = 'a finite number' if count == 1 else f'{count} finite numbers'
+    elif element.tag not in _MAY_BE_LARGER and any(abs(float(part)) > LARGEST for part in parts):
+        expected = f'at most {LARGEST:g}'
+    else:
         return []
-    expected = 'a finite number' if count == 1 else f'{count} finite numbers'
-    return [f"{where}: expected {expected}, got '{text[:60]}'"]
+    return [f'{where}: expected {expected}, got {quoted(text)}']

@@ -1,12 +1,15 @@
-"""What is refused before any parser builds a tree: size, depth, entities, encoding."""
+"""What is refused before any parser builds a tree: size, number, depth, entities, encoding."""
 
 import re
 from xml.parsers import expat
 
-from ..errors import RobotDescriptionError
+from ..errors import quoted, RobotDescriptionError
 
 MAX_BYTES = 5_000_000
 MAX_LINKS = 1_000
+# So many '<' and '=': three times what 1000 links of the most elaborate public robots have.
+MAX_TAGS = 200_000
+MAX_ATTRIBUTES = 100_000
 MAX_DEPTH = 32
 
 
@@ -30,11 +33,15 @@ def check_text(text):
     ------
     RobotDescriptionError
         If it is not UTF-8, not XML (with the parser's line), has a document type or an entity
-        definition, or exceeds 5 MB, 1000 links or 32 levels.
+        definition, or exceeds 5 MB, 200 000 tags, 100 000 attributes, 1000 links or joints,
+        or 32 levels.
 
     """
     if len(text) > MAX_BYTES:
         _refuse(f'it has {len(text)} bytes, at most {MAX_BYTES} are accepted')
+    for what, sign, most in (('tags', b'<', MAX_TAGS), ('attributes', b'=', MAX_ATTRIBUTES)):
+        if text.count(sign) > most:
+            _refuse(f'it has {text.count(sign)} {what}, at most {most} are accepted')
     if not text.strip():
         _refuse('it is empty: expected URDF text')
     try:
@@ -43,7 +50,8 @@ def check_text(text):
         _refuse(f'it is not UTF-8 text: byte {error.start}: {error.reason}')
     declared = re.match(rb'\s*<\?xml[^>]*encoding\s*=\s*["\']([^"\']+)', text)
     if declared and declared[1].lower() not in (b'utf-8', b'us-ascii', b'ascii'):
-        _refuse(f'its encoding is {declared[1].decode()}, expected UTF-8: save it as UTF-8')
+        _refuse(f'its encoding is {quoted(declared[1].decode())}, expected UTF-8: '
+                'save it as UTF-8')
     try:
         _Scan().run(text)
     except _RefusedError as error:
@@ -54,11 +62,11 @@ def check_text(text):
 
 
 class _Scan:
-    """Counts depth and links while the stream passes."""
+    """Counts depth, links and joints while the stream passes."""
 
     def __init__(self):
         self.depth = 0
-        self.links = 0
+        self.counts = {'link': 0, 'joint': 0}
 
     def run(self, text):
         parser = expat.ParserCreate(encoding='utf-8')
@@ -70,14 +78,14 @@ class _Scan:
     def _start(self, tag, attributes):
         self.depth += 1
         if self.depth == 1 and tag != 'robot':
-            raise _RefusedError(f'its root element is <{tag}>, expected <robot>; '
+            raise _RefusedError(f'its root element is <{quoted(tag)[1:-1]}>, expected <robot>; '
                                 'a xacro file must be expanded first')
         if self.depth > MAX_DEPTH:
             raise _RefusedError(f'its elements are nested more than {MAX_DEPTH} deep')
-        if self.depth == 2 and tag == 'link':
-            self.links += 1
-            if self.links > MAX_LINKS:
-                raise _RefusedError(f'it has more than {MAX_LINKS} links')
+        if self.depth == 2 and tag in self.counts:
+            self.counts[tag] += 1
+            if self.counts[tag] > MAX_LINKS:
+                raise _RefusedError(f'it has more than {MAX_LINKS} {tag}s')
 
     def _end(self, tag):
         self.depth -= 1

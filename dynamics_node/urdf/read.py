@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from .attributes import is_number, number_problems
+from .attributes import is_number, LARGEST, number_problems
 from .description import Inertial, Joint, Link, Mimic, RobotDescription
 from .guard import check_text
 from .inertial import inertial_findings
@@ -15,12 +15,17 @@ from .structure import moved_links, root_link, structure_problems
 from .yourdfpy_parser import urdf_class
 from ..errors import RobotDescriptionError
 
-# What dynamics reads. Everything else (visuals, collisions, meshes, plugins) is dropped before
-# the text reaches yourdfpy, so no mesh address is ever looked at.
+# What dynamics reads. Everything else (visuals, collisions, meshes, plugins, names of other name
+# spaces) is left out before the text reaches yourdfpy, so no mesh address is ever looked at.
 _PARTS = {
+    'robot': {'link', 'joint'},
     'link': {'inertial'},
+    'inertial': {'origin', 'mass', 'inertia'},
     'joint': {'parent', 'child', 'origin', 'axis', 'limit', 'dynamics', 'mimic'},
 }
+_ATTRIBUTES = {'name', 'type', 'link', 'joint', 'xyz', 'rpy', 'value', 'ixx', 'ixy', 'ixz', 'iyy',
+               'iyz', 'izz', 'lower', 'upper', 'effort', 'velocity', 'damping', 'friction',
+               'multiplier', 'offset'}
 
 
 def read_urdf(source):
@@ -46,14 +51,19 @@ def read_urdf(source):
     text = load_text(source)
     check_text(text)
     try:
-        robot = ElementTree.fromstring(text)
+        # The encoding is settled; what an XML declaration says behind a byte order mark is not
+        # looked up.
+        robot = ElementTree.fromstring(text, ElementTree.XMLParser(encoding='utf-8'))
     except ElementTree.ParseError as error:  # a prefix that no xmlns declares
         raise RobotDescriptionError([f'it is not XML: {error}; a xacro file must be expanded '
                                      'first']) from error
     if any('xacro' in element.tag for element in robot.iter()):
         raise RobotDescriptionError(['it contains xacro elements: expand it first, with '
                                      '`xacro robot.urdf.xacro > robot.urdf`'])
-    _strip(robot)
+    name = robot.get('name') or 'robot'
+    robot = _needed(robot)
+    # yourdfpy asks for one, of no use to it.
+    robot.set('name', 'robot')
     problems = structure_problems(robot) + number_problems(robot)
     if problems:
         raise RobotDescriptionError(problems)
@@ -66,20 +76,17 @@ def read_urdf(source):
     joints, joint_problems, joint_warnings = _joints(parsed.joints, limits, axisless)
     if link_problems or joint_problems:
         raise RobotDescriptionError(link_problems + joint_problems)
-    return RobotDescription(parsed.name, root_link(robot), tuple(links), tuple(joints),
+    return RobotDescription(name, root_link(robot), tuple(links), tuple(joints),
                             tuple(link_warnings + joint_warnings))
 
 
-def _strip(robot):
-    for element in list(robot):
-        if element.tag not in _PARTS:
-            robot.remove(element)
-            continue
-        for part in list(element):
-            if part.tag not in _PARTS[element.tag]:
-                element.remove(part)
-    if not robot.get('name'):
-        robot.set('name', 'robot')
+def _needed(element):
+    # A copy: to remove a hundred thousand elements one by one takes more than a second.
+    copy = ElementTree.Element(element.tag, {name: value for name, value in element.items()
+                                             if name in _ATTRIBUTES})
+    parts = _PARTS.get(element.tag, ())
+    copy.extend([_needed(part) for part in element if part.tag in parts])
+    return copy
 
 
 def _take_soft_limits(robot):
@@ -156,7 +163,10 @@ def _position_limits(joint):
         return -math.inf, math.inf
     lower = 0.0 if limit.lower is None else limit.lower
     upper = 0.0 if limit.upper is None else limit.upper
-    return (lower, upper) if lower < upper else (-math.inf, math.inf)
+    if not lower < upper:
+        return -math.inf, math.inf
+    return (lower if abs(lower) <= LARGEST else -math.inf,
+            upper if abs(upper) <= LARGEST else math.inf)
 
 
 def _number(dynamics, name):

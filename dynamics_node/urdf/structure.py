@@ -2,8 +2,12 @@
 
 from collections import Counter
 
+from ..errors import quoted
+
 SUPPORTED_TYPES = ('revolute', 'continuous', 'prismatic', 'fixed')
 UNSUPPORTED_TYPES = ('floating', 'planar')
+# Names stand in every message and log.
+MAX_NAME = 255
 
 
 def structure_problems(robot):
@@ -13,13 +17,14 @@ def structure_problems(robot):
     Parameters
     ----------
     robot : xml.etree.ElementTree.Element
-        The <robot> element.
+        The <robot> element, with nothing in it but what dynamics reads.
 
     Returns
     -------
     list of str
-        One sentence per problem; empty means exactly one root, no cycle, known names, joint
-        types that are supported, and mimic chains that end at a movable joint.
+        One sentence per problem; empty means that nothing is said twice, exactly one root, no
+        cycle, known names that can be printed, joint types that are supported, and mimic chains
+        that end at a movable joint.
 
     """
     links = [link.get('name') for link in robot.findall('link')]
@@ -28,8 +33,11 @@ def structure_problems(robot):
     problems += _naming_problems('joint', [joint.get('name') for joint in joints])
     if not links:
         problems.append('it has no <link>')
+    for element in robot:
+        problems += _repetition_problems(element)
+    known = set(links)
     for joint in joints:
-        problems += _joint_problems(joint, set(links))
+        problems += _joint_problems(joint, known)
     if not problems:
         problems += _tree_problems(links, joints)
         problems += _mimic_problems(joints)
@@ -46,31 +54,52 @@ def root_link(robot):
 def moved_links(robot):
     """Return the set of links that any movable joint carries; the structure must be sound."""
     joint_of = {joint.find('child').get('link'): joint for joint in robot.findall('joint')}
-    moved = set()
+    is_moved: dict[str, bool] = {}
     for name in joint_of:
-        link = name
-        while link in joint_of and name not in moved:
-            if joint_of[link].get('type') != 'fixed':
-                moved.add(name)
+        # Up to a joint that moves, to a link whose answer is known, or to the root.
+        path, link = [], name
+        while (link in joint_of and link not in is_moved
+               and joint_of[link].get('type') == 'fixed'):
+            path.append(link)
             link = joint_of[link].find('parent').get('link')
-    return moved
+        answer = is_moved.get(link, link in joint_of)
+        is_moved.update(dict.fromkeys([*path, link], answer))
+    return {link for link, answer in is_moved.items() if answer}
 
 
 def _naming_problems(kind, names):
     problems = [f'a <{kind}> has no name' for name in names if not name]
-    return problems + [f"{kind} '{name}' is defined {count} times"
-                       for name, count in Counter(names).items() if name and count > 1]
+    counts = Counter(name for name in names if name)
+    problems += [f'{kind} {quoted(name)} is defined {count} times'
+                 for name, count in counts.items() if count > 1]
+    problems += [f'{kind} {quoted(name)}: its name has {len(name)} characters, at most '
+                 f'{MAX_NAME} are accepted' for name in counts if len(name) > MAX_NAME]
+    problems += [f'{kind} {quoted(name)}: its name has characters that cannot be printed'
+                 for name in counts if not name.isprintable()]
+    return problems
+
+
+def _repetition_problems(element):
+    # Of two, each parser may take another one.
+    where = f'{element.tag} {quoted(element.get("name"))}'
+    problems = []
+    for owner, parent in ((where, element), *((f'{where}: <inertial>', inertial)
+                                              for inertial in element.findall('inertial'))):
+        counts = Counter(part.tag for part in parent)
+        problems += [f'{owner} has {count} <{tag}>, expected one'
+                     for tag, count in counts.items() if count > 1]
+    return problems
 
 
 def _joint_problems(joint, links):
-    where = f"joint '{joint.get('name')}'"
+    where = f'joint {quoted(joint.get("name"))}'
     problems = []
     kind = joint.get('type')
     if kind in UNSUPPORTED_TYPES:
         problems.append(f'{where}: type {kind} is not supported; use one of '
                         f'{", ".join(SUPPORTED_TYPES)}')
     elif kind not in SUPPORTED_TYPES:
-        problems.append(f"{where}: type '{kind}' is unknown; use one of "
+        problems.append(f'{where}: type {quoted(kind)} is unknown; use one of '
                         f'{", ".join(SUPPORTED_TYPES)}')
     for end in ('parent', 'child'):
         element = joint.find(end)
@@ -78,24 +107,24 @@ def _joint_problems(joint, links):
         if name is None:
             problems.append(f'{where}: <{end} link="..."/> is missing')
         elif name not in links:
-            problems.append(f"{where}: {end} link '{name}' does not exist")
+            problems.append(f'{where}: {end} link {quoted(name)} does not exist')
     return problems
 
 
 def _tree_problems(links, joints):
     parents = [(joint.get('name'), joint.find('parent').get('link'),
                 joint.find('child').get('link')) for joint in joints]
-    problems = [f"link '{name}' is the child of {count} joints, must be of one"
+    problems = [f'link {quoted(name)} is the child of {count} joints, must be of one'
                 for name, count in Counter(child for _, _, child in parents).items()
                 if count > 1]
     parent_of = {child: parent for _, parent, child in parents}
     roots = [name for name in links if name not in parent_of]
     if len(roots) > 1:
         problems.append(f'it has {len(roots)} root links, must be one: '
-                        + ', '.join(f"'{name}'" for name in roots))
+                        + ', '.join(map(quoted, roots)))
     cycle = _cycle(parent_of)
     if cycle:
-        problems.append('its links form a cycle: ' + ' -> '.join(f"'{name}'" for name in cycle))
+        problems.append('its links form a cycle: ' + ' -> '.join(map(quoted, cycle)))
     return problems
 
 
@@ -109,13 +138,13 @@ def _mimic_problems(joints):
             continue
         name, leader = joint.get('name'), mimic.get('joint')
         if leader not in movable:
-            problems.append(f"joint '{name}': mimics '{leader}', which is not a movable joint")
+            problems.append(f'joint {quoted(name)}: mimics {quoted(leader)}, which is not a '
+                            'movable joint')
         else:
             leader_of[name] = leader
     cycle = _cycle(leader_of)
     if cycle:
-        problems.append('mimic joints form a cycle: '
-                        + ' -> '.join(f"'{name}'" for name in cycle))
+        problems.append('mimic joints form a cycle: ' + ' -> '.join(map(quoted, cycle)))
     return problems
 
 

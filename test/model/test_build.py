@@ -88,10 +88,8 @@ def test_a_long_chain_does_not_meet_the_recursion_limit():
     assert len(tree.body_names) == 10
 
 
-def test_numbers_whose_products_overflow_are_refused():
-    mass = MASS.format('1e308').replace('<mass', '<origin xyz="0 0 1e200"/><mass')
-    text = (f'<robot name="r"><link name="a"/><link name="b">{mass}</link><joint name="j" '
-            'type="revolute"><parent link="a"/><child link="b"/></joint></robot>')
-    with np.errstate(all='ignore'), pytest.raises(
-            RobotDescriptionError, match='inertia behind joint j is not finite'):
-        build_tree(read_urdf(text))
+def test_mimic_joints_that_multiply_beyond_all_robots_are_refused():
+    leader, follower = ('revolute', ''), ('revolute', 'joint="j0" multiplier="1e20"')
+    chain(leader, follower, ('revolute', 'joint="j1" multiplier="1e10"'))
+    with pytest.raises(RobotDescriptionError, match=r'joint j2: multiplier .* most 1e.30, got'):
+        chain(leader, follower, ('revolute', 'joint="j1" multiplier="1e20"'))

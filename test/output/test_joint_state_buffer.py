@@ -58,6 +58,12 @@ def test_a_joint_never_measured_stands_at_its_neutral_position():
     assert np.isnan(unit.velocity).all()
 
 
+def test_an_infinite_velocity_is_not_known():
+    unit = buffer()
+    unit.update(0.0, NAMES, [1, 2, 3], [math.inf, -math.inf, 4.0])
+    np.testing.assert_array_equal(unit.velocity, [math.nan, math.nan, 4.0])
+
+
 @pytest.mark.parametrize('names, position, velocity, kind, message', [
     (['a', 'b'], [1.0], [], 'length', 'expected 2 positions for 2 names, got 1'),
     (['a'], [], [], 'length', 'expected 1 positions for 1 names, got 0'),

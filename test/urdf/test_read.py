@@ -58,6 +58,15 @@ def test_what_dynamics_does_not_need_does_not_matter():
                                     '</ros2_control><!-- a comment -->'))
 
 
+def test_what_belongs_to_other_name_spaces_reaches_no_other_parser(caplog):
+    # xml:id must be a name, and lxml reads the text once more, its way, where it is none.
+    text = two_links('<axis xyz="0 0 1" xml:id="1 2"/><x:axis xmlns:x="a b" xyz="1 0 0"/>',
+                     inertial=INERTIAL.replace('<mass', '<mass xml:id="3 4"')
+                     + '<visual xml:id="5 6"/>')
+    np.testing.assert_array_equal(read_urdf(text).joints[0].axis, [0, 0, 1])
+    assert caplog.text == ''
+
+
 @pytest.mark.parametrize('text, message', [
     ('', 'it is empty'),
     ('   \n ', 'it is empty'),
@@ -70,7 +79,7 @@ def test_what_dynamics_does_not_need_does_not_matter():
      'more than 1000 links'),
     ('<robot name="r">' + ' ' * 5_000_001 + '</robot>', 'at most 5000000 are accepted'),
     (b'<robot name="\xff"/>', 'it is not UTF-8 text: byte 13'),
-    ('<?xml version="1.0" encoding="utf-16"?><robot name="r"/>', 'its encoding is utf-16'),
+    ('<?xml version="1.0" encoding="utf-16"?><robot name="r"/>', "its encoding is 'utf-16'"),
     ('<robot name="\ud800"/>', 'it is not UTF-8'),
     ('<robot name="r"/>', 'it has no <link>'),
     ('<robot name="r">&undefined;</robot>', 'it is not XML: undefined entity'),

@@ -1,0 +1,70 @@
+"""Joint states as bytes on the wire, written by hand so that every count can lie."""
+
+import struct
+
+_LIES = (0, 1, 2, 3, 4, 5, 100, 4_095, 4_097, 65_536, 2**24, 2**28, 2**29 - 1, 2**31 - 1, 2**31,
+         2**32 - 8, 2**32 - 1)
+
+
+class _Writer:
+    """Appends values with CDR's alignment; `lie` is the index of a count and what it says."""
+
+    def __init__(self, lie):
+        self.data = bytearray(b'\x00\x01\x00\x00')
+        self._lie, self._counts = lie, 0
+
+    def number(self, form, value):
+        # The representation in front is no part of the alignment.
+        self.data += bytes((4 - len(self.data)) % struct.calcsize(form))
+        self.data += struct.pack('<' + form, value)
+
+    def count(self, value):
+        at, said = self._lie
+        self.number('I', said if at == self._counts else value)
+        self._counts += 1
+
+    def text(self, data):
+        self.count(len(data))
+        self.data += data
+
+    def doubles(self, values):
+        self.count(len(values))
+        for value in values:
+            self.number('d', value)
+
+
+def joint_state(stamp, frame, names, sequences, lie=(-1, 0)):
+    """
+    Return the bytes of a joint state.
+
+    Parameters
+    ----------
+    stamp : (int, int)
+    frame : bytes
+        With the zero at its end.
+    names : list of bytes
+        The same.
+    sequences : three lists of float
+        Positions, velocities, efforts.
+    lie : (int, int)
+        Which of the counts, in their order, is not true, and what it says.
+
+    """
+    writer = _Writer(lie)
+    writer.number('i', stamp[0])
+    writer.number('I', stamp[1])
+    writer.text(frame)
+    writer.count(len(names))
+    for name in names:
+        writer.text(name)
+    for values in sequences:
+        writer.doubles(values)
+    return bytes(writer.data)
+
+
+def lie(rng, names):
+    """Return a lie about one count of a state of so many names."""
+    # A count is only behind the texts: as many are tried there as among them.
+    at = rng.randrange(names + 5) if rng.random() < 0.5 else rng.choice((0, 1, *range(
+        names + 2, names + 5)))
+    return at, rng.choice((rng.choice(_LIES), rng.randrange(12), rng.randrange(2**32)))

@@ -1,0 +1,166 @@
+"""The second door: a stream of serialised joint states, as the node takes them from its topic."""
+
+from array import array
+from itertools import count
+import math
+from types import SimpleNamespace
+
+from dynamics_node.output import JointStateBuffer, RejectedStateError, take_state
+from dynamics_node.output.joint_state_buffer import MAX_NAMES
+from dynamics_node.output.motion_limits import MotionLimits
+from dynamics_node.ros.joint_state_reader import JointStateReader
+import numpy as np
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import JointState
+
+from .audit import nothing_opened
+from .first_words import first_words
+from .joint_states import CLOCK, JOINTS, PERIOD, streams
+from .printed import nothing_printed, NOWHERE, stderr_to
+
+NAME = 'joint states'
+SUFFIX = '.hex'
+# What rclpy raises where the bytes are no message.
+_NO_MESSAGE = rclpy_implementation.RMWError
+# The last joint is measured, but nothing depends on it.
+_NEEDED = JOINTS[:3]
+_LIMITS = MotionLimits(JOINTS, [3.0, 3.0, math.nan, 1.0],
+                       [(-3.0, 3.0), (-math.inf, math.inf), (0.0, 1.0), (0.0, 1.0)],
+                       [False, True, False, False])
+_TIMEOUT = 0.1
+# A text that stands in the log, once a second.
+_LONGEST_MESSAGE = 1_000
+
+
+def inputs():
+    """Return the strategy of inputs."""
+    return streams()
+
+
+def warm_up():
+    """Load whatever is loaded lazily."""
+    _answer([bytes.fromhex('00010000') + bytes(28), b''])
+
+
+def to_bytes(stream):
+    """Return an input as the content of a file: a line of hexadecimal digits per message."""
+    return ''.join(data.hex() + '\n' for data in stream).encode()
+
+
+def from_bytes(data):
+    """Return the input that `to_bytes` has written."""
+    return [bytes.fromhex(line) for line in data.decode().splitlines()]
+
+
+def check(stream):
+    """
+    Put a stream of messages through the door.
+
+    Returns
+    -------
+    list of str
+        How each of them was answered: 'taken', or the first words of what is wrong.
+
+    Raises
+    ------
+    Exception
+        Anything that is no answer: the finding.
+
+    """
+    with nothing_opened():
+        return _answer(stream)
+
+
+def _answer(stream):
+    reader = JointStateReader()
+    buffer = JointStateBuffer(JOINTS, _NEEDED, np.zeros(len(JOINTS)), _LIMITS)
+    answers = []
+    for clock, data in zip(count(CLOCK, PERIOD), stream):
+        before = _state(buffer)
+        try:
+            answers.append(_receive(reader, buffer, data, clock))
+        except RejectedStateError as error:
+            _judge_refusal(error, before, _state(buffer))
+            answers.append(f'refused: {error.kind}: {first_words(str(error))}')
+        _judge(buffer)
+    return answers
+
+
+def _judge_refusal(error, before, after):
+    _judge_text(str(error))
+    # After a fault nothing counts as measured, but all stands where it stood.
+    changed = after[:3] != before[:3] if error.is_fault else after != before
+    assert not changed, f'a refused message changed {before} to {after}'
+
+
+def _receive(reader, buffer, data, clock):
+    message = _read(reader, data)
+    stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+    faults = []
+    # What take_state asks of an OutputChannel.
+    channel = SimpleNamespace(
+        fault=lambda now, reason: faults.append(reason),
+        restart=lambda now, reason: faults.append(reason),
+        settings=SimpleNamespace(state_timeout=_TIMEOUT))
+    try:
+        is_usable = take_state(buffer, channel, clock * 1e-9, message.name, message.position,
+                               message.velocity, stamp, clock)
+    finally:
+        for text in faults:
+            _judge_text(text)
+    _judge_text(buffer.outside() or '-')
+    return 'taken: fault' if faults else 'taken: usable' if is_usable else 'taken: not complete'
+
+
+def _read(reader, data):
+    # What rclpy reads is right; only efforts, which nobody needs, may be missing.
+    try:
+        with stderr_to(NOWHERE):
+            expected = deserialize_message(data, JointState)
+    except _NO_MESSAGE:
+        expected = None
+    try:
+        with nothing_printed():
+            message = reader.read(data)
+    except RejectedStateError:
+        # The reader refuses more, but only what no robot sends.
+        assert expected is None or data[:2] not in (b'\x00\x00', b'\x00\x01') \
+            or _is_too_large(expected), 'rclpy reads this message'
+        raise
+    assert message.effort == array('d')
+    if expected is None:
+        for values in (message.position, message.velocity):
+            assert values.tobytes() in data, 'rclpy does not read this message'
+        return message
+    assert list(message.name) == list(expected.name)
+    assert message.header == expected.header
+    for name in ('position', 'velocity'):
+        # As bytes: NaN is not equal to itself.
+        assert getattr(message, name).tobytes() == getattr(expected, name).tobytes()
+    return message
+
+
+def _judge_text(text):
+    assert text.isprintable(), f'not to be printed: {text!r}'
+    assert 0 < len(text) < _LONGEST_MESSAGE, f'{len(text)} characters: {text:.99}'
+
+
+def _is_too_large(message):
+    return max(len(message.name), len(message.position), len(message.velocity),
+               len(message.effort)) > MAX_NAMES
+
+
+def _state(buffer):
+    # As bytes for the same reason. The time is after all that come.
+    end = (CLOCK + 100 * PERIOD) * 1e-9
+    return (buffer.position.tobytes(), buffer.velocity.tobytes(), buffer.age(end),
+            buffer.accepted, *(buffer.stale_joints(end, age * PERIOD * 1e-9 - 1e-3)
+                               for age in range(90, 101)))
+
+
+def _judge(buffer):
+    position, velocity = buffer.position, buffer.velocity
+    assert np.isfinite(position).all(), f'position {position}'
+    assert not np.isinf(velocity).any(), f'velocity {velocity}'
+    assert not math.isnan(buffer.age(0.0))
