@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..errors import ArgumentError
+from ..errors import ArgumentError, quoted
 
 
 class JointSelection:
@@ -69,8 +69,8 @@ class JointSelection:
             return np.arange(len(self.names))
         if len(names) != len(self.names) or sorted(names) != sorted(self.names):
             # As many as it takes to see the mistake: somebody may send a million.
-            shown = [str(name)[:60] for name in names[:len(self.names) + 1]]
+            shown = [quoted(name) for name in names[:len(self.names) + 1]]
             more = f' and {len(names) - len(shown)} more' if len(names) > len(shown) else ''
             raise ArgumentError(f'joint_names: expected a permutation of {list(self.names)}, '
-                                f'got {shown}{more}')
+                                f'got [{", ".join(shown)}]{more}')
         return np.array([self.names.index(name) for name in names], dtype=np.intp)

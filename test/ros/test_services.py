@@ -110,12 +110,14 @@ def test_refused_requests_say_why_and_answer_empty_arrays(shared):
              ({'position': [np.nan] * N}, 'position: expected finite values'),
              ({'joint_names': names[:2], 'position': [0.0] * N}, 'expected a permutation of'),
              ({'joint_names': [*names[:-1], 'elbow'], 'position': [0.0] * N}, "'elbow'"),
-             ({'joint_names': [names[0]] * N, 'position': [0.0] * N}, 'permutation')]
+             ({'joint_names': [names[0]] * N, 'position': [0.0] * N}, 'permutation'),
+             ({'joint_names': ['a' * 900] * 2000}, f"...'] and {1999 - N} more")]
     for fields, reason in cases:
         for name, kind in KINDS.items():
             answer = shared.call(kind, f'/dynamics_node/{name}', kind.Request(**fields))
             assert not answer.success
             assert reason in answer.message
+            assert len(answer.message) < 2000
             assert all(len(array) == 0 for array in arrays(answer).values())
     for name, kind in KINDS.items():
         if hasattr(kind.Request(), 'velocity'):
