@@ -66,6 +66,7 @@ class JointStateBuffer:
         self._stamp = [0] * len(names)
         self._oldest = self._forgotten = -math.inf
         self._jumps = 0
+        self._jumped_joint = -1
         self._clock = 0
         self._known_names = None
         self._pairs: list[tuple[int, int]] = []
@@ -137,7 +138,8 @@ class JointStateBuffer:
         except RejectedStateError as error:
             self.rejected[error.kind] += 1
             raise
-        self._jumps = 0
+        if self._jumps and any(target == self._jumped_joint for _, target in self._needed_pairs):
+            self._jumps = 0  # it is the joint itself that stands where it may
         self.accepted += 1
 
     def _update(self, now, names, positions, velocities, stamp, clock):
@@ -194,6 +196,7 @@ class JointStateBuffer:
         text = ('expected a position that the joint can have reached, got '
                 + self.limits.describe_jump(joint, self._position[joint], position, dt))
         self._jumps += 1
+        self._jumped_joint = joint
         if self._jumps < MAX_JUMPS:
             raise RejectedStateError('jump', text)
         self.forget()
