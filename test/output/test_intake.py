@@ -11,7 +11,7 @@ from dynamics_node.output import (
     take_state,
 )
 from dynamics_node.output.channel import OutputSettings
-from hypothesis import given, note
+from hypothesis import example, given, note
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -158,6 +158,12 @@ def stamp_of(choice, clock):
     return clock - round(choice * SECOND) if isinstance(choice, float) else choice * SECOND
 
 
+# An arm that moves as fast as it can while ACTIVE needs a larger step than its rate limit.
+SWING = [(0.0, ('good', 1.4, 0.2)), (0.0, ('enable',)), *[(0.01, ('good', 1.4, 0.2))] * 60,
+         (0.01, ('good', 1.345, 0.2))]
+
+
+@example(behavior='hold', events=SWING)
 @given(st.sampled_from(['ramp_to_zero', 'zero', 'hold']),
        st.lists(st.tuples(st.one_of(st.just(0.01), st.floats(0, 0.5)), EVENTS), max_size=80))
 def test_whatever_comes_no_command_is_wrong_and_none_comes_while_off(behavior, events):

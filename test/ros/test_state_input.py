@@ -80,6 +80,10 @@ def test_the_newest_state_wins_and_those_before_it_are_counted(client, receiver)
     client.until(lambda: receiver.received[-1][0] == [0.008], receiver.spin)
     assert len(receiver.received) == 2
     assert receiver.input.skipped - before == 8
+    at(client, *(0.001 * i for i in range(9, 12)))()
+    client.during(0.02)
+    client.until(lambda: receiver.received[-1][0] == [0.011], receiver.spin)
+    assert receiver.input.skipped - before == 10
 
 
 def test_a_position_beyond_its_limits_is_computed_with_and_warned_about(client, receiver):
