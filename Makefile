@@ -4,6 +4,8 @@ SHELL := bash
 .DEFAULT_GOAL := help
 .PHONY: help demo test bench fuzz lint build shell lock clean
 
+.PHONY: help demo test bench soak lint build shell lock clean
+
 # ROBOT, VIEW and PYTHON reach the scripts through the environment.
 
 help: ## This list
@@ -20,6 +22,10 @@ bench: ## Speed beside other libraries, into docs/benchmarks.md; ARGS='...': see
 
 fuzz: ## 100 000 broken descriptions and joint states; ARGS='...': see python -m fuzz -h
 	@bash scripts/fuzz.sh $(ARGS)
+
+soak: ## The simulated arm for 10 minutes, faults at random; ARGS='...': see python -m soak -h
+	@bash scripts/soak.sh $(ARGS)
+>>>>>>> 08cd94ee0333a31e2d6064c520ff310ea97c2787
 
 lint: ## ruff and mypy
 	@bash scripts/lint.sh

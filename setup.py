@@ -26,7 +26,8 @@ setup(
     install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'yourdfpy'],
     extras_require={
         'demo': ['mujoco', 'matplotlib', 'rich'],
-        'test': ['pytest', 'hypothesis', 'scipy', 'pin', 'mujoco', 'example-robot-data'],
+        'test': ['pytest', 'pytest-xdist', 'hypothesis', 'scipy', 'pin', 'mujoco',
+                 'example-robot-data'],
     },
     python_requires='>=3.10',
     zip_safe=True,

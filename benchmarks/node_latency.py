@@ -211,9 +211,12 @@ class _Enabler:
     def __call__(self):
         for _ in range(3):  # hear of a fault in the pause
             self._driver.executor.spin_once(timeout_sec=0.0)
+        end = time.monotonic() + PATIENCE
         while self._state != 'ACTIVE':
             answer = self._driver.call(self._client, SetBool.Request(data=True),
                                        self._stream.send)
+            if time.monotonic() > end:
+                raise RuntimeError(f'not ACTIVE within {PATIENCE:g} s: {answer.message}')
             if answer.success:
                 self._driver.until(lambda: self._state in ('ACTIVE', 'FAULT'),
                                    self._stream.send)

@@ -50,8 +50,7 @@ class Stream:
         self._messages = [JointState(name=list(names), position=array('d', row),
                                      velocity=array('d', [0.0] * len(row)))
                           for row in positions]
-        for message in self._messages:  # as a robot's: without a stamp the node takes its own
-            message.header.stamp = node.get_clock().now().to_msg()
+        self._clock = node.get_clock()
         steps = (answers[1:] - answers[:-1]).min(axis=0)
         self._column = int(steps.argmax())
         if steps[self._column] <= 0.0:
@@ -75,7 +74,7 @@ class Stream:
 
     def send(self, index=0):
         """Publish one state of the slice, without waiting for its command."""
-        self._publisher.publish(self._messages[index])
+        self._publisher.publish(self._stamped(index))
 
     def drain(self):
         """Forget the commands that have come."""
@@ -104,8 +103,9 @@ class Stream:
         begin = time.perf_counter() + 0.002
         for index in range(count):
             self._receive_until(begin + index / rate, sent, latencies)
+            message = self._stamped(index)
             sent[index] = time.perf_counter()
-            self._publisher.publish(self._messages[index])
+            self._publisher.publish(message)
         self._receive_until(time.perf_counter() + LATE, sent, latencies)
         answered = [latency for latency in latencies if latency is not None]
         self.sent += count
@@ -116,6 +116,12 @@ class Stream:
         """Take publisher and subscription away from the node again."""
         node.destroy_publisher(self._publisher)
         node.destroy_subscription(self._subscription)
+
+    def _stamped(self, index):
+        # As a robot's: a state from long ago, or the same one again, is no news to the node.
+        message = self._messages[index]
+        message.header.stamp = self._clock.now().to_msg()
+        return message
 
     def _receive_until(self, end, sent, latencies):
         while (left := end - time.perf_counter()) > 0.0:

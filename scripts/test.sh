@@ -1,11 +1,19 @@
 #!/usr/bin/env bash
 # The tests: scripts/test.sh [arguments of pytest]. Without a path among them: all of test/.
+# Without any argument they run in several workers; their start does not pay for a part.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# More arguments for every run, for example `-n 2` where pytest-xdist is installed.
-read -r -a arguments <<<"${PYTEST_OPTIONS:-}"
-arguments+=("$@")
+arguments=()
+if (($# == 0)); then
+    # One more than cores: many tests wait for processes most of the time. More than a few would
+    # only starve those that measure time.
+    workers=$(($(nproc) + 1))
+    arguments+=("-n$((workers < 5 ? workers : 5))")
+fi
+# More arguments for every run, for example `-n 0`: all in one process.
+read -r -a options <<<"${PYTEST_OPTIONS:-}"
+arguments+=("${options[@]}" "$@")
 has_path=
 for argument in "${arguments[@]}"; do
     if [[ $argument != -* && -e ${argument%%::*} ]]; then

@@ -1,12 +1,6 @@
 """Fixtures of the tests over DDS: everything started here is also ended here."""
 
-import os
-
 import pytest
-
-# A domain of one's own, unless whoever starts the tests has chosen one.
-os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-os.environ.setdefault('ROS_DOMAIN_ID', str(os.getpid() % 100 + 1))
 
 
 @pytest.fixture

@@ -5,10 +5,12 @@ import signal
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.msg import JointDynamics
 from dynamics_node import RobotModel
+from dynamics_node.ros.node import DynamicsNode
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.parameter import Parameter as RosParameter
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
@@ -18,7 +20,10 @@ import yaml
 
 @pytest.fixture(scope='module')
 def arm():
-    return RobotModel.from_urdf(ARM7)
+    model = RobotModel.from_urdf(ARM7)
+    # The node finds the machine code too: equal to the last bit needs the same code.
+    model.specialise()
+    return model
 
 
 def measured(names, q):
@@ -305,3 +310,43 @@ def test_stamps_that_cannot_be_true_make_no_torque_and_the_refusal_says_so(clien
     assert ' for stamp' in answer.message
     process.send(signal.SIGINT)
     assert 'synchronise the clocks of both machines' in process.wait()[1]
+
+
+def test_an_exception_on_the_way_of_the_torque_stops_the_output_and_the_node_lives(
+        client, capfd):
+    # In this process, where the model can be broken.
+    node = DynamicsNode(context=client.context, parameter_overrides=[
+        RosParameter(name, value=value) for name, value in (
+            ('robot_description_file', str(PENDULUM)), ('state_timeout', 0.5),
+            ('start_ramp', 0.0), ('stop_ramp', 0.1), ('effort_limits', [25.0]))])
+    assert 'effort_limits are above those of the URDF: hinge: 25, in the URDF 20' in (
+        capfd.readouterr().err)
+    client.executor.add_node(node)
+    client.record_commands()
+
+    def publish():
+        client.publish(['hinge'], [0.0])
+
+    def active():
+        client.until_heard(publish)
+        assert client.enable(True, publish).success
+        client.until(client.output_is('ACTIVE'), publish)
+        client.until(lambda: client.commands and client.commands[-1][1] == [
+            pytest.approx(0.5 * 3 * 0.7 * 9.81)], publish)
+    try:
+        active()
+        node._get_robot().gravity_torque = lambda: 1 / 0
+        client.until(client.output_is('FAULT'), publish)
+        assert client.outputs[-1].reason == (
+            'internal error in _received: division by zero')
+        assert client.commands[-1][1] == [0.0]
+        assert 'ZeroDivisionError' in capfd.readouterr().err
+        del node._get_robot().gravity_torque
+        active()
+        node._get_robot().gravity_torque = lambda: np.array([np.nan])
+        client.until(client.output_is('FAULT'), publish)
+        assert client.outputs[-1].reason.startswith('invalid effort: expected finite efforts')
+        assert np.isfinite([command for _, command in client.commands]).all()
+    finally:
+        client.executor.remove_node(node)
+        node.destroy_node()

@@ -9,6 +9,8 @@ from dynamics_interfaces.srv import (
 from dynamics_node import RobotModel
 import numpy as np
 import pytest
+from support.domains import claim
+from support.processes import Client, NodeProcess
 from support.robots import ARM7
 
 ARM = RobotModel.from_urdf(ARM7)
@@ -18,6 +20,17 @@ KINDS = {'get_mass_matrix': GetMassMatrix, 'get_coriolis_matrix': GetCoriolisMat
 Q = np.clip(np.linspace(0.8, -0.9, N), *ARM.position_limits.T)
 QD = np.linspace(-1.0, 1.5, N)
 
+
+@pytest.fixture(scope='module')
+def shared():
+    """Return a client of a node with arm7, for all tests that only ask."""
+    # In a domain of its own: other tests here start nodes of the same name.
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv('ROS_DOMAIN_ID', str(claim()))
+        node, client = NodeProcess(robot_description_file=ARM7), Client()
+    yield client
+    client.close()
+    node.close()
 
 
 def assert_rounded(actual, expected):
@@ -31,36 +44,35 @@ def arrays(answer):
             answer.get_fields_and_field_types().items() if kind.startswith('sequence')}
 
 
-def test_services_answer_at_a_given_and_at_the_measured_state(client, start):
-    start(robot_description_file=ARM7)
+def test_services_answer_at_a_given_and_at_the_measured_state(shared):
     D, C, G = ARM.dynamics(Q, QD)
 
     def publish():
-        client.publish(reversed(ARM.joint_names), reversed(Q))
+        shared.publish(reversed(ARM.joint_names), reversed(Q))
 
     for position, action in ((Q.tolist(), None), ([], publish)):
         if action:
-            client.until(client.states.get_subscription_count)
-            client.during(0.2, publish)
-        answer = client.call(GetMassMatrix, '/dynamics_node/get_mass_matrix',
+            shared.until(shared.states.get_subscription_count)
+            shared.during(0.2, publish)
+        answer = shared.call(GetMassMatrix, '/dynamics_node/get_mass_matrix',
                              GetMassMatrix.Request(position=position), action)
         assert answer.success, answer.message
         assert tuple(answer.joint_names) == ARM.joint_names
         np.testing.assert_array_equal(answer.position, Q)
         assert_rounded(np.reshape(answer.mass_matrix, (N, N)), D)
 
-        answer = client.call(GetCoriolisMatrix, '/dynamics_node/get_coriolis_matrix',
+        answer = shared.call(GetCoriolisMatrix, '/dynamics_node/get_coriolis_matrix',
                              GetCoriolisMatrix.Request(position=position, velocity=QD.tolist()),
                              action)
         assert_rounded(np.reshape(answer.coriolis_matrix, (N, N)), C)
         np.testing.assert_allclose(answer.coriolis_torque, C @ QD, rtol=1e-13, atol=1e-15)
         np.testing.assert_array_equal(answer.velocity, QD)
 
-        answer = client.call(GetGravityTorque, '/dynamics_node/get_gravity_torque',
+        answer = shared.call(GetGravityTorque, '/dynamics_node/get_gravity_torque',
                              GetGravityTorque.Request(position=position), action)
         assert_rounded(answer.gravity_torque, G)
 
-        answer = client.call(GetDynamics, '/dynamics_node/get_dynamics',
+        answer = shared.call(GetDynamics, '/dynamics_node/get_dynamics',
                              GetDynamics.Request(position=position, velocity=QD.tolist()), action)
         assert_rounded(np.reshape(answer.mass_matrix, (N, N)), D)
         assert_rounded(np.reshape(answer.coriolis_matrix, (N, N)), C)
@@ -69,11 +81,10 @@ def test_services_answer_at_a_given_and_at_the_measured_state(client, start):
         assert answer.potential_energy == pytest.approx(ARM.potential_energy(Q), rel=1e-13)
 
 
-def test_a_permutation_of_the_joints_permutes_the_answer(client, start):
-    start(robot_description_file=ARM7)
+def test_a_permutation_of_the_joints_permutes_the_answer(shared):
     order = np.random.default_rng(4).permutation(N)
     names = [ARM.joint_names[i] for i in order]
-    answer = client.call(GetDynamics, '/dynamics_node/get_dynamics', GetDynamics.Request(
+    answer = shared.call(GetDynamics, '/dynamics_node/get_dynamics', GetDynamics.Request(
         joint_names=names, position=Q[order].tolist(), velocity=QD[order].tolist()))
     D, C, G = ARM.dynamics(Q, QD)
     assert answer.joint_names == names
@@ -83,17 +94,16 @@ def test_a_permutation_of_the_joints_permutes_the_answer(client, start):
     assert_rounded(answer.gravity_torque, G[order])
 
 
-def test_velocity_left_out_is_zero(client, start):
-    start(robot_description_file=ARM7)
-    answer = client.call(GetCoriolisMatrix, '/dynamics_node/get_coriolis_matrix',
+def test_velocity_left_out_is_zero(shared):
+    answer = shared.call(GetCoriolisMatrix, '/dynamics_node/get_coriolis_matrix',
                          GetCoriolisMatrix.Request(position=Q.tolist()))
     assert answer.success
     assert not np.any(answer.coriolis_matrix)
     np.testing.assert_array_equal(answer.velocity, np.zeros(N))
 
 
-def test_refused_requests_say_why_and_answer_empty_arrays(client, start):
-    start(robot_description_file=ARM7)
+def test_refused_requests_say_why_and_answer_empty_arrays(shared):
+    shared.during(0.2)  # what another test has published becomes too old
     names = list(ARM.joint_names)
     cases = [({}, f'no joint state within 0.1 s for {names[0]}'),
              ({'position': [0.0]}, f'position: expected {N} values'),
@@ -103,21 +113,21 @@ def test_refused_requests_say_why_and_answer_empty_arrays(client, start):
              ({'joint_names': [names[0]] * N, 'position': [0.0] * N}, 'permutation')]
     for fields, reason in cases:
         for name, kind in KINDS.items():
-            answer = client.call(kind, f'/dynamics_node/{name}', kind.Request(**fields))
+            answer = shared.call(kind, f'/dynamics_node/{name}', kind.Request(**fields))
             assert not answer.success
             assert reason in answer.message
             assert all(len(array) == 0 for array in arrays(answer).values())
     for name, kind in KINDS.items():
         if hasattr(kind.Request(), 'velocity'):
-            answer = client.call(kind, f'/dynamics_node/{name}', kind.Request(
+            answer = shared.call(kind, f'/dynamics_node/{name}', kind.Request(
                 position=Q.tolist(), velocity=[1e300] * N))
             assert not answer.success
             assert 'the result is not finite' in answer.message
             assert all(len(array) == 0 for array in arrays(answer).values())
-    answer = client.call(GetDynamics, '/dynamics_node/get_dynamics')
+    answer = shared.call(GetDynamics, '/dynamics_node/get_dynamics')
     assert np.isnan(answer.kinetic_energy)
     assert np.isnan(answer.potential_energy)
-    answer = client.call(GetCoriolisMatrix, '/dynamics_node/get_coriolis_matrix',
+    answer = shared.call(GetCoriolisMatrix, '/dynamics_node/get_coriolis_matrix',
                          GetCoriolisMatrix.Request(position=Q.tolist(), velocity=[np.inf] * N))
     assert 'velocity: expected finite values' in answer.message
 

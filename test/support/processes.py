@@ -16,7 +16,8 @@ from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import SetBool
 
 LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
-PATIENCE = 30.0
+# A limit for what never comes, not for what is slow: a busy machine takes long to start a node.
+PATIENCE = 60.0
 
 
 class NodeProcess:
@@ -97,7 +98,8 @@ class Client:
         due = time.monotonic()
         while not (result := condition()):
             if time.monotonic() > end:
-                raise AssertionError(f'not within {timeout} s: {condition}')
+                heard = [f'{output.name} {output.reason}' for output in self.outputs[-3:]]
+                raise AssertionError(f'not within {timeout} s: {condition}; output: {heard}')
             if action is not None and time.monotonic() >= due:
                 action()
                 due += period

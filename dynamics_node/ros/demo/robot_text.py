@@ -6,6 +6,7 @@ The simulation judges the node, so it shares no code with the node's own URDF re
 """
 
 from dataclasses import dataclass
+import itertools
 import math
 from xml.etree import ElementTree as ET
 
@@ -83,6 +84,7 @@ def mujoco_text(text: str) -> str:
 
     """
     root = parse(text)
+    _rename_world(root)
     for link in root.findall('link'):
         for shape in link.findall('collision') + link.findall('visual'):
             if shape.tag == 'collision' or shape.find('geometry/mesh') is not None:
@@ -95,6 +97,16 @@ def mujoco_text(text: str) -> str:
     ET.SubElement(ET.SubElement(root, 'mujoco'), 'compiler', {
         'discardvisual': 'false', 'fusestatic': 'true', 'inertiafromgeom': 'false'})
     return ET.tostring(root, encoding='unicode')
+
+
+def _rename_world(root: ET.Element) -> None:
+    """Give a link named 'world' another name: MuJoCo takes it for the ground, wherever it is."""
+    names = {link.get('name') for link in root.findall('link')}
+    free = next(name for i in itertools.count() if (name := f'world_link_{i}') not in names)
+    for tag, key in (('link', 'name'), ('joint/parent', 'link'), ('joint/child', 'link')):
+        for element in root.findall(tag):
+            if element.get(key) == 'world':
+                element.set(key, free)
 
 
 def robot_name(text: str) -> str:

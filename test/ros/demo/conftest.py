@@ -1,6 +1,5 @@
 """The simulated robot as a real process, and a ROS client with one executor that is kept."""
 
-import itertools
 import os
 from pathlib import Path
 import signal
@@ -17,19 +16,18 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import SetBool, Trigger
+from support.domains import claim
 
 ARM7 = Path(__file__).resolve().parents[3] / 'config' / 'robots' / 'arm7.urdf'
 SERVICES = {'set_brakes': SetBool, 'reset': Trigger, 'push': Trigger}
 PATIENCE = 15.0  # [s]
-
-_domains = itertools.count(os.getpid() * 7)
 
 
 def environment():
     """Return the environment of a child process: a domain of its own, this very package."""
     package = str(Path(dynamics_node.__file__).resolve().parents[1])
     path = os.pathsep.join([package, *filter(None, [os.environ.get('PYTHONPATH')])])
-    return {**os.environ, 'PYTHONPATH': path, 'ROS_DOMAIN_ID': str(1 + next(_domains) % 100),
+    return {**os.environ, 'PYTHONPATH': path, 'ROS_DOMAIN_ID': str(claim()),
             'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 
 

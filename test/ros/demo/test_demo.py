@@ -15,7 +15,7 @@ def demo(child_environment, tmp_path):
     def run(*arguments):
         done = subprocess.run(
             [sys.executable, '-m', 'dynamics_node.ros.demo.demo', *arguments], cwd=tmp_path,
-            env=child_environment, timeout=100, text=True, stdout=subprocess.PIPE,
+            env=child_environment, timeout=280, text=True, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT)
         return done.returncode, done.stdout
     return run

@@ -47,6 +47,16 @@ def test_gravity_torque_agrees_with_pinocchio(arm, oracle):
         assert np.abs(arm.gravity_torque(pose) - oracle(pose)[1]).max() < 1e-5
 
 
+@pytest.mark.parametrize('link', ['base', 'forearm', 'hand', 'right_finger'])
+def test_a_link_named_world_is_a_link_like_any_other(arm, arm7_text, link):
+    """MuJoCo takes one for the ground: it dropped its mass, or the whole robot."""
+    assert f'"{link}"' in arm7_text
+    renamed = MujocoArm(arm7_text.replace(f'"{link}"', '"world"'))
+    pose = start_pose(arm, 'arm7')
+    assert renamed.mass_matrix(pose) == pytest.approx(arm.mass_matrix(pose))
+    assert renamed.gravity_torque(pose) == pytest.approx(arm.gravity_torque(pose))
+
+
 def test_the_second_finger_follows_the_first(arm):
     """Also while the first one is driven hard and the arm falls."""
     arm.place(start_pose(arm, 'arm7') + [0, 0, 0, 0, 0, 0, 0, -0.02])

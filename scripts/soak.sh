@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# The soak: scripts/soak.sh [arguments of `python -m soak`]. Exit code 1 if anything went wrong.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+bash scripts/setup.sh demo
+# shellcheck source=scripts/env.sh
+source scripts/env.sh
+# shellcheck source=scripts/isolate.sh
+source scripts/isolate.sh
+export PYTHONPATH=$PWD/test${PYTHONPATH:+:$PYTHONPATH}
+exec python -m soak "$@"

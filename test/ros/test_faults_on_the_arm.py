@@ -1,0 +1,347 @@
+"""
+Faults between a simulated arm and the node, over DDS: what the node says, and what the arm does.
+
+One robot, one line and, as long as its parameters are the same, one node serve all tests.
+
+"""
+
+import bisect
+import math
+import signal
+
+import numpy as np
+import pytest
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from soak.rig import COMMAND_TOPIC, Rig
+from soak.sink import sink
+from std_msgs.msg import Float64MultiArray
+
+# Shorter than by default, for the tests' sake; the timeout is longer, for a busy machine's.
+TIMEOUT, START_RAMP, STOP_RAMP = 0.5, 0.2, 0.5
+# Where an arm that is held may be pushed to by a message that is nearly right, rad.
+HELD = math.radians(1.0)
+
+
+@pytest.fixture(scope='module')
+def shared():
+    """Return the rig of all tests."""
+    rig = Rig(state_timeout=TIMEOUT, start_ramp=START_RAMP, stop_ramp=STOP_RAMP)
+    yield rig
+    rig.during(0.2)
+    rig.client.settle(everything=True)
+    rig.close()
+    assert rig.client.judge.violations == []
+
+
+@pytest.fixture
+def rig(shared):
+    """Return the rig with a node as it is by default, the arm ACTIVE and floating."""
+    shared.use_node()
+    shared.float()
+    yield shared
+    check_commands(shared)
+
+
+def check_commands(rig):
+    """Every command was one that may reach an arm."""
+    rig.client.settle()
+    assert rig.client.judge.violations == []
+
+
+def newest_stop(rig):
+    """Return when the newest stop began and ended, s."""
+    client = rig.client
+    index = max(i for i, output in enumerate(client.outputs) if output.name == 'STOPPING')
+    begin = client.output_times[index]
+    return begin, ([*client.output_times, begin + STOP_RAMP][index + 1])
+
+
+def assert_it_sank_by_the_ramp(rig):
+    """
+    Compare the commands with the ramp, and the arm with MuJoCo's word for what that does to it.
+
+    The arm was held, at rest, before. A drop, or a push by a wrong effort, would be far faster.
+
+    """
+    begin, end = newest_stop(rig)
+    assert end - begin > 0.95 * STOP_RAMP
+    check_fading(rig, begin)
+    time, position, velocity, effort = rig.client.truth_between(begin, end)
+    # A simulation that lags, and a command that comes late, only make the arm slower.
+    expected_time, _, expected = sink(rig.urdf_text, position[0], effort[0], STOP_RAMP,
+                                      end - begin)
+    speed = np.abs(velocity).max(axis=1)
+    assert (speed <= 1.1 * np.interp(time - begin, expected_time, expected) + 0.02).all()
+    assert speed[-1] > 0.2  # it did sink: the effort is gone, and not held
+
+
+def check_fading(rig, begin):
+    """The commands of a stop never exceed what its ramp leaves, and end at zero."""
+    times, commands = zip(*rig.client.commands)
+    first = bisect.bisect(times, begin)
+    held = np.array(commands[first - 1])
+    assert np.abs(held).max() > 10.0
+    # A command was computed after the one before it had been written.
+    computed = np.array(times[first - 1:-1]) - begin
+    left = np.clip(1.0 - computed / STOP_RAMP, 0.0, 1.0)
+    faded = np.array(commands[first:])
+    assert (np.abs(faded) <= left[:, None] * np.abs(held) + 1e-9).all()
+    assert not faded[-1].any()
+
+
+def assert_it_is_still_held(rig, since, fault=''):
+    """The arm has not moved more than a push by a nearly right message explains."""
+    _, position, velocity, _ = rig.client.truth_between(since, rig.client.now)
+    assert rig.client.output == 'ACTIVE', f'{fault}: {rig.explain()}'
+    assert np.abs(position - position[0]).max() < HELD, fault
+    assert np.abs(velocity).max() < 0.5, fault
+
+
+# What does not stop it -----------------------------------------------------------------------
+
+HARMLESS = {
+    'permuted': None, 'parts': None, 'no_stamp': None, 'unknown_names/7': None, 'flood': None,
+    'duplicated': None, 'frozen/7': 'old stamp', 'nan/7': 'not finite', 'length/7': 'length',
+    'name_twice/7': 'name twice', 'jump/20': 'jump', 'old_stamp/7': 'stamp',
+    'future_stamp/7': 'stamp', 'many_names/20': 'too many names', 'garbage/7': 'unreadable',
+}
+
+
+def test_bad_messages_among_good_ones_are_counted_and_do_not_move_the_arm(rig):
+    client = rig.client
+    before = dict(client.diagnostics['joint states'])
+
+    def is_counted(kind):
+        key = f'rejected: {kind}'
+        return kind is None or client.number('joint states', key) > float(before.get(key, 0))
+
+    # Once each; those of which the newest has always won, or that were lost on the way, again.
+    todo = dict(HARMLESS)
+    for _ in range(5):
+        for fault in todo:
+            begin = client.now
+            client.set_fault(fault)
+            rig.during(0.25)
+            assert_it_is_still_held(rig, begin, fault)
+        client.set_fault('none')
+        client.until_diagnosed()
+        todo = {fault: kind for fault, kind in todo.items() if not is_counted(kind)}
+        if not todo:
+            return
+    raise AssertionError(f'not counted: {todo}')
+
+
+def test_a_short_freeze_of_the_line_is_bridged(rig):
+    begin = rig.client.now
+    rig.processes.send('relay', signal.SIGSTOP)
+    rig.during(0.4 * TIMEOUT)
+    rig.processes.send('relay', signal.SIGCONT)
+    rig.during(0.2)
+    assert_it_is_still_held(rig, begin)
+
+
+# What stops it -------------------------------------------------------------------------------
+
+def test_silence_stops_it_by_the_ramp(rig):
+    rig.client.set_fault('silent')
+    assert 'joint_states stale: last 0.5' in rig.until_fault()
+    assert_it_sank_by_the_ramp(rig)
+
+
+def test_nothing_that_is_not_a_fresh_state_keeps_it_alive(rig):
+    client = rig.client
+    faults = ('frozen', 'bag_loop', 'half', 'all_nan', 'old_stamp', 'future_stamp', 'name_twice',
+              'unknown_names')
+    # Together longer than the timeout, each shorter.
+    for fault in faults:
+        client.set_fault(fault)
+        rig.during(0.1)
+    assert 'joint_states stale: last 0.5' in rig.until_fault()
+    assert_it_sank_by_the_ramp(rig)
+
+
+def test_a_frozen_process_stops_it_by_the_ramp(rig):
+    rig.processes.send('relay', signal.SIGSTOP)
+    reason = rig.until_fault()
+    rig.processes.send('relay', signal.SIGCONT)
+    assert 'joint_states stale: last 0.5' in reason
+    assert_it_sank_by_the_ramp(rig)
+
+
+def test_an_arm_that_is_said_to_have_jumped_is_not_driven(rig):
+    before = rig.client.now
+    rig.client.set_fault('jump')
+    reason = rig.until_fault()
+    assert '3 times in a row' in reason
+    assert newest_stop(rig)[0] - before < TIMEOUT  # at once, and not when the states are stale
+    assert_it_sank_by_the_ramp(rig)
+
+
+def test_an_arm_that_is_said_to_run_away_is_not_driven(rig):
+    rig.client.set_fault('too_fast')
+    reason = rig.until_fault()
+    assert 'runaway: shoulder_yaw at 50' in reason
+    assert_it_sank_by_the_ramp(rig)
+
+
+def test_a_forgotten_publisher_of_zeros_stops_it(rig):
+    node, names = rig.client.node, rig.arm.names
+    # As joint_state_publisher does it; the arm stands far from zero.
+    rival = node.create_publisher(JointState, 'joint_states', 1)
+    timer = node.create_timer(0.1, lambda: rival.publish(JointState(
+        header=JointState().header, name=names, position=[0.0] * len(names))))
+    try:
+        reason = rig.until_fault()
+    finally:
+        node.destroy_timer(timer)
+        node.destroy_publisher(rival)
+    assert '2 publishers on /joint_states' in reason or '3 times in a row' in reason
+    assert_it_sank_by_the_ramp(rig)
+
+
+def test_another_source_of_efforts_stops_it(rig):
+    rival = rig.client.node.create_publisher(Float64MultiArray, COMMAND_TOPIC, 1)
+    try:
+        reason = rig.until_fault()
+    finally:
+        rig.client.node.destroy_publisher(rival)
+    assert f'1 other publisher(s) on {COMMAND_TOPIC}' in reason
+    assert_it_sank_by_the_ramp(rig)
+
+
+def test_a_controller_with_another_order_of_joints_is_not_driven(rig):
+    client = rig.client
+    client.set_brakes(True)
+    assert client.enable(False).success
+    rig.until(lambda: client.output == 'READY')
+    other = Node('other_controller', context=client.context)
+    order = list(reversed(rig.arm.driven_names))
+    other.declare_parameter('joints', order)
+    other.create_subscription(Float64MultiArray, COMMAND_TOPIC, lambda message: None, 1)
+    client.executor.add_node(other)
+    try:
+        def is_refused():
+            answer = client.enable(True)
+            if answer.success:  # it has not been found yet
+                client.enable(False)
+                rig.until(lambda: client.output == 'READY')
+            return answer.message if not answer.success else ''
+        message = rig.until(is_refused)
+    finally:
+        client.executor.remove_node(other)
+        other.destroy_node()
+    assert '/other_controller' in message
+    assert ', '.join(order) in message and ', '.join(rig.arm.driven_names) in message
+
+
+# Processes that end --------------------------------------------------------------------------
+
+def assert_a_signal_lets_the_arm_sink(rig, number):
+    """It ends in order, and the arm sinks by the ramp."""
+    rig.processes.send('node', number)
+    rig.until(lambda: not rig.processes.is_running('node'))
+    rig.client.set_brakes(True)
+    assert rig.processes.end('node') == 0
+    assert_it_sank_by_the_ramp(rig)
+
+
+def test_sigterm_to_the_node_lets_the_arm_sink_by_the_ramp(rig):
+    assert_a_signal_lets_the_arm_sink(rig, signal.SIGTERM)
+
+
+@pytest.fixture
+def patient(shared):
+    """
+    Return the rig with a node that suffers several publishers of joint states.
+
+    DDS forgets a process that died without a word only after 20 s: until then there are two.
+
+    """
+    shared.use_node(allow_several_state_publishers='true')
+    shared.float()
+    yield shared
+    check_commands(shared)
+
+
+def test_after_the_death_of_the_line_another_one_may_take_over(patient):
+    patient.processes.end('relay', signal.SIGKILL)
+    assert 'joint_states stale: last 0.5' in patient.until_fault()
+    assert_it_sank_by_the_ramp(patient)
+    patient.float()  # on another line
+    begin = patient.client.now
+    patient.during(0.2)
+    assert_it_is_still_held(patient, begin)
+
+
+def test_the_death_of_the_robot_ends_in_silence(patient):
+    patient.processes.end('robot', signal.SIGKILL)
+    patient.until(lambda: patient.client.output == 'FAULT')
+    assert 'joint_states stale: last 0.5' in patient.client.outputs[-1].reason
+    check_fading(patient, newest_stop(patient)[0])
+
+
+def test_sigint_to_the_node_lets_the_arm_sink_by_the_ramp(patient):
+    assert_a_signal_lets_the_arm_sink(patient, signal.SIGINT)
+
+
+# Simulated time ------------------------------------------------------------------------------
+
+@pytest.fixture
+def simulated(shared):
+    """Return the rig with a node on simulated time, hearing reliably and patient."""
+    shared.use_node(**{
+        'use_sim_time': 'true', 'state_timeout': 2.0, 'allow_several_state_publishers': 'true',
+        'qos_overrides./joint_states.subscription.reliability': 'reliable'})
+    yield shared
+    shared.client.set_clock_offset(math.nan)
+    check_commands(shared)
+
+
+def test_simulated_time_may_jump(simulated):
+    rig, client = simulated, simulated.client
+    rig.during(0.3)
+    refused = client.enable(True)
+    assert not refused.success and 'no joint state' in refused.message
+    client.set_clock_offset(-1000.0)
+    rig.float()
+    begin = client.now
+    # Back: measured states are dropped, and the effort goes on from where it is.
+    client.set_clock_offset(-1010.0)
+    rig.until(lambda: client.output == 'STARTING')
+    assert 'clock went back by' in client.outputs[-1].reason
+    rig.until(lambda: client.output == 'ACTIVE')
+    assert_it_is_still_held(rig, begin)
+    # Ahead: stamps and clock go on together, so the states are fresh.
+    client.set_clock_offset(-900.0)
+    rig.during(0.3)
+    assert_it_is_still_held(rig, begin)
+
+
+def test_a_million_names_are_not_even_read(simulated):
+    # A reliable connection delivers the sixteen megabytes that a best-effort one loses.
+    rig, client = simulated, simulated.client
+    client.set_clock_offset(-1000.0)
+    rig.float()
+    begin = client.now
+    client.set_fault('million_names/200')
+    rig.until(lambda: client.number('joint states', 'rejected: too many names') > 0)
+    client.set_fault('none')
+    assert_it_is_still_held(rig, begin)
+
+
+def test_the_death_of_the_node_leaves_the_last_effort(simulated):
+    # What the safety section of the README warns of. The last test: DDS takes a while to forget.
+    rig, client = simulated, simulated.client
+    client.set_clock_offset(-1000.0)
+    rig.float()
+    begin = client.now
+    rig.processes.end('node', signal.SIGKILL)
+    rig.during(0.1)
+    after = client.now
+    rig.during(0.4)
+    _, position, _, _ = client.truth_between(begin, client.now)
+    assert np.abs(position - position[0]).max() < HELD
+    _, _, _, effort = client.truth_between(after, client.now)
+    assert np.abs(effort[0]).max() > 10.0
+    assert (effort == effort[0]).all()

@@ -1,0 +1,113 @@
+"""The faults of a soak: how each begins and ends, how long it lasts, and what follows from it."""
+
+from collections.abc import Callable
+from contextlib import contextmanager
+from dataclasses import dataclass
+import signal
+
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import Trigger
+
+from .rig import COMMAND_TOPIC
+
+# What the soak's node takes for stale, s; long, so that a busy machine does not do it alone.
+STATE_TIMEOUT = 0.5
+
+
+@dataclass(frozen=True)
+class Fault:
+    """
+    Something that goes wrong.
+
+    Attributes
+    ----------
+    name : str
+    inflict : callable(rig) -> context manager
+        Goes wrong from the beginning to the end of the context.
+    stops : bool
+        Whether the output has to end in FAULT, or to stay ACTIVE.
+    reason : str
+        Part of the reason of the FAULT.
+    longest : float
+        It lasts from a third of it on, s.
+    weight : float
+        How often it comes, beside the others.
+    breaks_books : bool
+        Whether states cannot be counted meanwhile: two publishers count for themselves.
+
+    """
+
+    name: str
+    inflict: Callable
+    stops: bool
+    reason: str = ''
+    longest: float = 1.0
+    weight: float = 1.0
+    breaks_books: bool = False
+
+
+def _on_the_line(kind, **options):
+    @contextmanager
+    def inflict(rig):
+        rig.client.set_fault(kind)
+        yield
+        rig.client.set_fault('none')
+    return Fault(kind, inflict, **options)
+
+
+@contextmanager
+def _stopped(rig):
+    rig.processes.send('relay', signal.SIGSTOP)
+    yield
+    rig.processes.send('relay', signal.SIGCONT)
+
+
+@contextmanager
+def _killed(rig):
+    rig.processes.end('relay', signal.SIGKILL)
+    yield
+
+
+@contextmanager
+def _second_state_publisher(rig):
+    rival = rig.client.node.create_publisher(JointState, 'joint_states', 1)
+    yield
+    rig.client.node.destroy_publisher(rival)
+
+
+@contextmanager
+def _second_source_of_efforts(rig):
+    rival = rig.client.node.create_publisher(Float64MultiArray, COMMAND_TOPIC, 1)
+    yield
+    rig.client.node.destroy_publisher(rival)
+
+
+@contextmanager
+def _pushed(rig):
+    rig.client.call(Trigger, '/simulated_robot/push')
+    yield
+
+
+STALE = 'joint_states stale'
+UNTIL_STALE = 3 * (STATE_TIMEOUT + 0.2)
+
+FAULTS = [
+    *[_on_the_line(kind, stops=False) for kind in (
+        'permuted', 'parts', 'duplicated', 'no_stamp', 'frozen/5', 'nan/5', 'length/5',
+        'name_twice/5', 'unknown_names/5', 'jump/30', 'old_stamp/5', 'future_stamp/5',
+        'bag_loop/5', 'garbage/5', 'flood', 'many_names/30', 'million_names/200')],
+    *[_on_the_line(kind, stops=True, reason=STALE, longest=UNTIL_STALE) for kind in (
+        'silent', 'frozen', 'half', 'all_nan', 'length', 'name_twice', 'unknown_names',
+        'old_stamp', 'future_stamp', 'bag_loop')],
+    _on_the_line('jump', stops=True, reason='times in a row'),
+    _on_the_line('too_fast', stops=True, reason='runaway'),
+    Fault('line stopped briefly', _stopped, stops=False, longest=0.3, weight=2.0),
+    Fault('line stopped', _stopped, stops=True, reason=STALE, longest=UNTIL_STALE),
+    Fault('line killed', _killed, stops=True, reason=STALE, weight=0.3, breaks_books=True),
+    Fault('second publisher of states', _second_state_publisher, stops=True,
+          reason='publishers on', breaks_books=True),
+    Fault('second source of efforts', _second_source_of_efforts, stops=True,
+          reason='other publisher'),
+    Fault('pushed', _pushed, stops=False),
+]

@@ -1,0 +1,101 @@
+"""What a soak has found: a table for people, and the verdict."""
+
+import math
+
+from rich import box
+from rich.table import Table
+
+# Memory that a process may need more than after the warm-up without leaking, MB.
+MEMORY = 8.0
+
+
+def failures(soak, client):
+    """
+    Return what was not as it has to be, one sentence each.
+
+    Parameters
+    ----------
+    soak : Soak
+        After its run.
+    client : ArmClient
+
+    Returns
+    -------
+    list of str
+
+    """
+    judge, books = client.judge, soak.books
+    found = [f'{name}: {failure}' for name, tally in soak.tallies.items()
+             for failure in tally.failures]
+    found += [f'command {text}' for text in judge.violations]
+    if judge.count > len(judge.violations):
+        found.append(f'... and {judge.count - len(judge.violations)} more wrong commands')
+    if books.missing or books.surplus:
+        found.append(f'of {books.sent} joint states, the node does not account for '
+                     f'{books.missing} and counts {books.surplus} too many')
+    if books.unanswered:
+        found.append(f'of {books.active} joint states accepted while ACTIVE, {books.unanswered} '
+                     'had no command, or several')
+    published = client.number('output', 'commands')
+    if judge.commands + judge.lost != published:
+        found.append(f'the node says that it has published {published:.0f} commands, got '
+                     f'{judge.commands} and missed {judge.lost}')
+    if soak.before:
+        if soak.after['memory'] - soak.before['memory'] > MEMORY:
+            found.append(f'the memory of the node grew from {soak.before["memory"]:.1f} to '
+                         f'{soak.after["memory"]:.1f} MB, expected at most {MEMORY:g} more')
+        found += [f'the node had {soak.before[what]} {what} and has {soak.after[what]} now'
+                  for what in ('files', 'threads') if soak.after[what] > soak.before[what]]
+    return found
+
+
+def print_report(console, soak, client, seed):
+    """Print the figures of a soak on a rich.console.Console."""
+    table = Table(box=box.SIMPLE_HEAD, title=f'{soak.duration:.0f} s of soak, seed {seed}',
+                  title_justify='left')
+    table.add_column('', no_wrap=True)
+    table.add_column('', justify='right', no_wrap=True)
+    for label, value in _figures(soak, client):
+        table.add_row(label, value)
+    console.print(table)
+    console.print(_faults(soak))
+
+
+def _figures(soak, client):
+    judge, books, latency = client.judge, soak.books, soak.latency
+    states = client.diagnostics['joint states']
+    yield 'joint states accepted', states['accepted']
+    for kind, count in sorted(soak.rejected.items()):
+        yield f'  rejected: {kind}', str(count)
+    yield '  skipped', states['skipped']
+    yield 'joint states sent, in the books', str(books.sent)
+    yield '  missing or counted twice', f'{books.missing} / {books.surplus}'
+    yield 'accepted while ACTIVE, in the books', str(books.active)
+    yield '  without a command', str(books.unanswered)
+    yield 'commands', client.diagnostics['output']['commands']
+    yield '  judged, not seen', f'{judge.commands} / {judge.lost}'
+    yield '  wrong', str(judge.count)
+    for label, share in (('median', 0.5), ('p99', 0.99), ('worst', 1.0)):
+        value = latency.quantile(share)
+        yield (f'state to command, {label}',
+               '-' if math.isnan(value) else f'{1e3 * value:.2f} ms')
+    for what, unit in (('memory', ' MB'), ('files', ''), ('threads', '')):
+        before, after = (vitals.get(what, math.nan) for vitals in (soak.before, soak.after))
+        digits = 1 if what == 'memory' else 0
+        earlier = '' if math.isnan(before) else f'{before:.{digits}f} -> '
+        yield f'{what} of the node', f'{earlier}{after:.{digits}f}{unit}'
+
+
+def _faults(soak):
+    table = Table(box=box.SIMPLE_HEAD)
+    table.add_column('fault', no_wrap=True)
+    table.add_column('injected', justify='right')
+    table.add_column('survived', justify='right')
+    table.add_column('line paused by itself', justify='right')
+    for name, tally in soak.tallies.items():
+        if tally.injected:
+            table.add_row(name, str(tally.injected), str(tally.survived), str(tally.paused))
+    table.add_section()
+    table.add_row('all', *(str(sum(getattr(tally, what) for tally in soak.tallies.values()))
+                           for what in ('injected', 'survived', 'paused')))
+    return table
