@@ -2,9 +2,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench fuzz lint build shell lock clean
-
-.PHONY: help demo test bench soak lint build shell lock clean
+.PHONY: help demo test bench fuzz soak lint build shell lock clean
 
 # ROBOT, VIEW and PYTHON reach the scripts through the environment.
 
@@ -25,7 +23,6 @@ fuzz: ## 100 000 broken descriptions and joint states; ARGS='...': see python -m
 
 soak: ## The simulated arm for 10 minutes, faults at random; ARGS='...': see python -m soak -h
 	@bash scripts/soak.sh $(ARGS)
->>>>>>> 08cd94ee0333a31e2d6064c520ff310ea97c2787
 
 lint: ## ruff and mypy
 	@bash scripts/lint.sh

@@ -111,6 +111,17 @@ def test_a_clock_that_goes_back_again_and_again_is_no_sign_of_life():
     assert 'stale' in path.channel.machine.fault
 
 
+def test_while_the_simulation_pauses_the_steady_clock_goes_on():
+    path, state = active()
+    paused = 101 * SECOND
+    for i in range(1, 13):
+        with pytest.raises(RejectedStateError, match='repeated'):
+            path.take(1.0 + 0.01 * i, state, clock=paused)
+        path.tick(1.0 + 0.01 * i)
+    assert path.channel.machine.name == 'STOPPING'
+    assert 'joint_states stale: last 0.11' in path.channel.machine.fault
+
+
 def test_without_a_clock_there_is_no_torque():
     path = Path()
     with pytest.raises(RejectedStateError, match='use_sim_time is true, but nothing has come'):

@@ -1,5 +1,6 @@
 """The processes of the rig: those of the demo, which can also be hurt and looked into."""
 
+import os
 from pathlib import Path
 import signal
 
@@ -8,6 +9,12 @@ from dynamics_node.ros.demo.processes import Processes
 
 class RigProcesses(Processes):
     """Starts, hurts, measures and ends processes by name."""
+
+    def environment(self):
+        """Return the environment, in which this package is found too."""
+        environment = super().environment()
+        folders = [str(Path(__file__).parents[1]), environment.get('PYTHONPATH', '')]
+        return dict(environment, PYTHONPATH=os.pathsep.join(filter(None, folders)))
 
     def send(self, name, number):
         """Send a signal."""

@@ -44,7 +44,11 @@ class Processes:
             self._running[name] = subprocess.Popen(
                 [sys.executable, '-m', module, *arguments], stdin=subprocess.DEVNULL,
                 stdout=log, stderr=subprocess.STDOUT, start_new_session=True,
-                env=dict(os.environ, PYTHONUNBUFFERED='1'))
+                env=self.environment())
+
+    def environment(self) -> dict[str, str]:
+        """Return the environment of the processes."""
+        return dict(os.environ, PYTHONUNBUFFERED='1')
 
     def check(self) -> None:
         """Raise DemoError if a process has ended by itself."""
