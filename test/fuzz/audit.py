@@ -16,11 +16,13 @@ class _Watch:
 
     is_on = False
     is_hooked = False
+    seen = ''
 
     def __call__(self, event, arguments):
         if self.is_on and event.startswith(_FORBIDDEN):
             self.is_on = False
-            raise OpenedError(f'{event} {arguments!r:.200}')
+            self.seen = f'{event} {arguments!r:.200}'
+            raise OpenedError(self.seen)
 
 
 _watch = _Watch()
@@ -37,8 +39,11 @@ def nothing_opened():
     if not _watch.is_hooked:
         sys.addaudithook(_watch)
         _watch.is_hooked = True
-    _watch.is_on = True
+    _watch.seen, _watch.is_on = '', True
     try:
         yield
     finally:
         _watch.is_on = False
+        # Also where somebody has caught it.
+        if _watch.seen:
+            raise OpenedError(_watch.seen)

@@ -8,6 +8,7 @@ from support.robots import ARM7, PENDULUM, random_urdf
 
 from .mutated_bytes import broken
 from .mutated_xml import changed_text, changed_tree, grown_text
+from .seeds import seeds
 
 # Every element that dynamics reads, and those that it must not look at.
 EVERYTHING = """<?xml version="1.0"?>
@@ -59,20 +60,19 @@ def descriptions():
     hypothesis takes ten times as long as to read the robot.
 
     """
-    seeds = st.lists(st.integers(0, 2**32), max_size=4)
-    ways = {-1: st.builds(lambda seed: grown_text(random.Random(seed)).encode(),
-                          st.integers(0, 2**32)),
+    ways = {-1: seeds.map(lambda seed: grown_text(random.Random(seed)).encode()),
             -2: st.binary(max_size=200),
             -3: st.text(max_size=200).map(lambda text: text.encode(errors='surrogatepass'))}
-    robots = [st.builds(_changed, st.just(text), seeds) for text in bases()]
+    changes = st.lists(seeds, min_size=1, max_size=4)
+    robots = [st.builds(_changed, st.just(text), changes) for text in bases()]
     return st.integers(-3, 2 * len(robots) - 1).flatmap(
         lambda way: ways[way] if way in ways else robots[way // 2])
 
 
-def _changed(text, seeds):
-    rngs = [random.Random(seed) for seed in seeds]
+def _changed(text, each):
     changes = {kind: [] for kind in _CHANGES}
-    for rng in rngs:
+    for seed in each:
+        rng = random.Random(seed)
         changes[rng.choice(_CHANGES)].append(rng)
     # Trees before texts before bytes: what is no XML any more cannot be changed as a tree.
     if changes['tree']:

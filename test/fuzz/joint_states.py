@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from .cdr import joint_state, lie
 from .mutated_bytes import broken
+from .seeds import seeds
 
 JOINTS = ('shoulder', 'elbow', 'wrist', 'finger')
 # When the first message comes and how much later each further one, ns.
@@ -28,9 +29,9 @@ def streams():
     Hypothesis chooses a seed for each message; see `descriptions` for why.
 
     """
-    return st.lists(st.integers(0, 2**32), min_size=1, max_size=8).map(
-        lambda seeds: [_message(random.Random(seed), CLOCK + i * PERIOD)
-                       for i, seed in enumerate(seeds)])
+    return st.lists(seeds, min_size=1, max_size=8).map(
+        lambda each: [_message(random.Random(seed), CLOCK + i * PERIOD)
+                      for i, seed in enumerate(each)])
 
 
 def _message(rng, clock):

@@ -1,5 +1,6 @@
 """XML broken by meaning: attributes, numbers, names, elements, and what stands between them."""
 
+from contextlib import suppress
 import re
 from xml.etree import ElementTree
 
@@ -26,10 +27,14 @@ _SNIPPETS = (
     ']]>', '<?xml version="1.0"?>', '<?xml version="1.1"?>', '<?a b?>', '<?xml-stylesheet a="b"?>',
     '<!-- a -->', '<!-- -- -->', '<!--', 'xmlns="a"', ' xmlns:a="b" ', ' xmlns:a="" ', ' a:b="c" ',
     '<a:b xmlns:a="c d"/>', '<xi:include href="file:///etc/passwd"/>', '<xacro:include/>',
-    '<a>' * 40, '<a>' * 50_000, '<link name="a"/>', '<link/>', '<joint/>', '<inertial/>',
-    '<joint name="j" type="fixed"/>', '<x/>' * 150_000, '<x a="b"/>' * 90_000,
+    '<a>' * 40, '<link name="a"/>', '<link/>', '<joint/>', '<inertial/>',
+    '<joint name="j" type="fixed"/>',
     '</link>', '</robot>', '<robot name="b">', '<', '>', '"', '=', '\x00', '\x0b', '\ufeff',
     '\ufffe', '\ud800', '  ', '\r\n', 'a', '<' + 'a' * 2_000 + '/>', '<a ' + 'b ' * 500 + '/>')
+
+# Near what is refused by its size, or beyond; rare, because they take long to make.
+_LARGE = ('<a>' * 50_000, '<x/>' * 190_000, '<x a="b"/>' * 95_000, '<!-- -->' * 190_000,
+          '&lt;' * 1_200_000, '<link name="a"/>' * 2_000, ' ' * 5_000_000)
 
 
 def changed_tree(rngs, text):
@@ -46,7 +51,8 @@ def changed_text(rng, text):
     """Return a text with a snippet between or inside its tags."""
     ends = [match.end() for match in re.finditer('[<>" ]', text)]
     at = rng.choice(ends) if ends and rng.random() < 0.7 else rng.randint(0, len(text))
-    return text[:at] + rng.choice(_SNIPPETS) + text[at:]
+    snippets = _LARGE if rng.random() < 0.03 else _SNIPPETS
+    return text[:at] + rng.choice(snippets) + text[at:]
 
 
 def grown_text(rng):
@@ -86,9 +92,13 @@ def _set(rng, parent, child, _):
     child.set(rng.choice(names), _value(rng))
 
 
+def _with_numbers(parents):
+    return [(each, name) for _, each in parents for name, text in each.attrib.items()
+            if text[:1] and text[0] in '-.0123456789']
+
+
 def _set_one_number(rng, parent, child, parents):
-    with_numbers = [(each, name) for _, each in parents for name, text in each.attrib.items()
-                    if text[:1] and text[0] in '-.0123456789']
+    with_numbers = _with_numbers(parents)
     if with_numbers:
         element, name = rng.choice(with_numbers)
         parts = element.get(name).split() or ['']
@@ -98,27 +108,28 @@ def _set_one_number(rng, parent, child, parents):
 
 def _scale(rng, parent, child, parents):
     # Far too large, far too small, negative: but numbers.
-    for name, text in child.attrib.items():
-        try:
-            parts = [float(part) for part in text.split()]
-        except ValueError:
-            continue
+    with_numbers = _with_numbers(parents)
+    if with_numbers:
+        element, name = rng.choice(with_numbers)
         factor = rng.choice((-1.0, 0.0, 10.0**rng.randint(-40, 40)))
-        child.set(name, ' '.join(repr(part * factor) for part in parts))
+        with suppress(ValueError):
+            element.set(name, ' '.join(repr(float(part) * factor)
+                                       for part in element.get(name).split()))
 
 
-def _unset(rng, parent, child, _):
-    if child.attrib:
+def _unset(rng, parent, child, parents):
+    with_attributes = [each for _, each in parents if each.attrib]
+    if with_attributes:
+        child = rng.choice(with_attributes)
         del child.attrib[rng.choice(list(child.attrib))]
 
 
 def _swap(rng, parent, child, parents):
-    for name in ('link', 'name', 'joint', 'type', 'value', 'xyz'):
-        others = [other for _, other in parents if name in other.attrib and other is not child]
-        if name in child.attrib and others:
-            other = rng.choice(others)
-            child.attrib[name], other.attrib[name] = other.attrib[name], child.attrib[name]
-            return
+    name = rng.choice(('link', 'link', 'name', 'joint', 'type', 'value', 'xyz'))
+    with_name = [each for _, each in parents if name in each.attrib]
+    if len(with_name) > 1:
+        one, other = rng.sample(with_name, 2)
+        one.attrib[name], other.attrib[name] = other.attrib[name], one.attrib[name]
 
 
 def _remove(rng, parent, child, _):

@@ -5,6 +5,7 @@ A process of its own, because an audit hook stays for ever. Prints a JSON object
 
 """
 
+from contextlib import suppress
 import importlib
 import json
 import logging
@@ -33,6 +34,11 @@ def _open(*_):
     return open('/dev/null')  # noqa: PTH123  (the plain one is what is meant)
 
 
+def _open_and_go_on(*_):
+    with suppress(Exception):
+        _open()
+
+
 def _refuse(buffer, *_):
     buffer._position[0] += 1e-9
     raise RejectedStateError('length', 'never')
@@ -50,6 +56,7 @@ _Reader = joint_state_reader.JointStateReader
 PLANTED = {
     'nothing in a description': (read, 'math', read.math, _TEXT),
     'a file is opened': (read, 'check_text', _open, _TEXT),
+    'a file is opened and the error caught': (read, 'check_text', _open_and_go_on, _TEXT),
     'a socket is opened': (read, 'check_text', lambda text: socket.socket(), _TEXT),
     'something is imported': (
         read, 'check_text', lambda text: importlib.import_module('tabnanny'), _TEXT),

@@ -13,6 +13,7 @@ TEST = Path(__file__).parents[1]
 NOTICED = {
     'nothing in a description': "['taken",
     'a file is opened': "OpenedError: open ('/dev/null'",
+    'a file is opened and the error caught': "OpenedError: open ('/dev/null'",
     'a socket is opened': 'OpenedError: socket.__new__',
     'something is imported': 'OpenedError: open',
     'another library logs': 'AssertionError: root logs: dear me',

@@ -1,5 +1,9 @@
 """Reading a URDF: what is taken, what is refused, and that every problem is named."""
 
+from pathlib import Path
+import subprocess
+import sys
+
 from dynamics_node import RobotDescriptionError
 from dynamics_node.urdf import read_urdf
 import numpy as np
@@ -52,6 +56,27 @@ def test_meshes_are_never_looked_at(tmp_path):
         assert read_urdf(text).links[1].inertial.mass == 1.0
 
 
+def test_nothing_is_opened_whatever_the_addresses_say():
+    # In a process of its own: an audit hook stays for ever. Once before, for what is loaded once.
+    mesh = '<mesh filename="{}"/>'
+    parts = ''.join(
+        f'<visual><geometry>{mesh.format(address)}</geometry></visual><collision><geometry>'
+        f'{mesh.format(address)}</geometry></collision><material name="{i}"><texture '
+        f'filename="{address}"/></material>' for i, address in enumerate((
+            'file:///etc/hostname', '/etc/hostname', '../a.stl', 'package://a/b.dae',
+            'http://localhost:1/a.dae', 'ftp://localhost/a.obj')))
+    text = two_links(inertial=INERTIAL + parts, more=parts).encode()
+    run = subprocess.run([sys.executable, '-c', (
+        'from dynamics_node.urdf import read_urdf\n'
+        'from fuzz.audit import nothing_opened\n'
+        f'text = {text!r}\n'
+        'read_urdf(text)\n'
+        'with nothing_opened():\n'
+        '    assert read_urdf(text).links[1].inertial.mass == 1.0\n')],
+        capture_output=True, text=True, cwd=Path(__file__).parents[1], check=False)
+    assert run.returncode == 0, run.stderr
+
+
 def test_what_dynamics_does_not_need_does_not_matter():
     assert read_urdf(two_links(more='<gazebo><x y="z"/></gazebo><transmission/>'
                                     '<material name="m"/><ros2_control><joint name="q"/>'
@@ -70,6 +95,8 @@ def test_what_belongs_to_other_name_spaces_reaches_no_other_parser(caplog):
 @pytest.mark.parametrize('text, message', [
     ('', 'it is empty'),
     ('   \n ', 'it is empty'),
+    (b'', 'it is empty'),
+    (b' \n', 'it is empty'),
     ('<robot><link', 'it is not XML: .*line 1'),
     ('<robot>\n<link>\n</robot>', 'it is not XML: mismatched tag, line 3'),
     ('<html/>', 'root element is <html>, expected <robot>'),
@@ -109,6 +136,15 @@ def test_only_finite_decimal_numbers_are_numbers(place, value):
     assert "'b'" in problem if place in ('mass', 'ixx') else "'j'" in problem
     assert 'expected' in problem
     assert 'got' in problem
+
+
+@pytest.mark.parametrize('attribute', ['value', 'ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz'])
+def test_an_attribute_that_is_missing_is_named(attribute):
+    [problem] = problems(two_links(inertial=INERTIAL.replace(f' {attribute}=', ' other=')))
+    tag = 'mass' if attribute == 'value' else 'inertia'
+    assert problem == f"link 'b': <{tag}> {attribute} is missing"
+    [problem] = problems(two_links('<axis/>'))
+    assert problem == "joint 'j': <axis> xyz is missing"
 
 
 @pytest.mark.parametrize('value', ['1', '-0.5', '+2.', '.5', '1e-3', ' 7 ', '1E+2'])
@@ -213,6 +249,9 @@ def test_impossible_inertia_is_refused_and_suspicious_inertia_is_warned_about():
 def test_rounding_of_a_point_mass_is_not_an_impossible_inertia():
     # As published for iCub: -5.4e-20 on a link of half a kilogram.
     assert read_urdf(with_diagonal(-5.42101e-20, 0, 0, mass=0.526)).warnings == ()
+    # And beyond rounding it is.
+    [problem] = problems(with_diagonal(-1e-13, 1, 1))
+    assert 'smallest principal moment of inertia is -1e-13' in problem
 
 
 def test_impossible_inertia_that_no_joint_moves_is_only_suspicious():
