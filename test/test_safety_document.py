@@ -42,6 +42,7 @@ def test_the_numbers_are_those_of_the_code(text):
         ('shortest time between two states', motion_limits.SHORTEST_STEP),
         ('a stamp may differ', stamps.SMALLEST_TOLERANCE),
         ('longest time above', channel.LONGEST_SATURATION),
+        ('times the clock may go back', channel.MAX_RESTARTS),
         ('most joint names', joint_state_buffer.MAX_NAMES),
         ('other publishers', node.RIVALS_EVERY),
         ('time a controller has', controller_check.ANSWER_WITHIN),

@@ -12,6 +12,8 @@ STOP_STEP = 0.01
 SHORTEST_LOOK = 0.001
 # An arm that needs more than its limit for so long is not held by it, s.
 LONGEST_SATURATION = 2.0
+# Starts that begin anew before the one before was over: more of them in a row follow no state.
+MAX_RESTARTS = 3
 STOP_BEHAVIORS = ('ramp_to_zero', 'hold', 'zero')
 
 
@@ -63,10 +65,11 @@ class OutputChannel:
         self._saturated_since = None
         self._start_from = self._stop_from = np.zeros(0)
         self._holds = False
+        self._restarts = 0
 
     def set_limiter(self, limits, rate_limits, scale, names=()):
         """
-        Take new limits; the last command stays what it is, so nothing jumps.
+        Take new limits; the last command to the same joints stays what it is: nothing jumps.
 
         Parameters
         ----------
@@ -78,7 +81,7 @@ class OutputChannel:
         """
         last = self.limiter
         self.limiter = EffortLimiter(limits, rate_limits, scale, names)
-        if last.last.size == self.limiter.last.size:
+        if last.names == self.limiter.names:
             self.limiter.carry_on_from(last)
 
     def enable(self, now):
@@ -101,13 +104,15 @@ class OutputChannel:
         self._start_from = self.limiter.last
         self._last_time = now
         self._saturated_since = None
+        self._restarts = 0
         return True
 
     def restart(self, now, reason):
         """
         Go from the last command to the model's by the start ramp, because the state is new.
 
-        Nothing happens unless commands follow the model.
+        Nothing happens unless commands follow the model. More than MAX_RESTARTS of them without
+        a start that came to its end are a fault: the effort would stay where it is for ever.
 
         Parameters
         ----------
@@ -117,6 +122,10 @@ class OutputChannel:
             For people.
 
         """
+        self._restarts = self._restarts + 1 if self.machine.state == OutputState.STARTING else 1
+        if self._restarts > MAX_RESTARTS:
+            self.fault(now, f'{reason}, {self._restarts} times before the start ramp was over')
+            return
         self._start_from = self.limiter.last
         self.machine.restart(now, self.settings.start_ramp, reason)
 
@@ -167,6 +176,8 @@ class OutputChannel:
             self._holds = holds
             if holds:
                 reason += ' (stop_behavior hold: the last efforts stay in force)'
+        elif not may_hold:
+            self._holds = False
         self.machine.stop(now, ramp, reason, is_fault)
 
     def on_effort(self, now, effort):
@@ -197,6 +208,21 @@ class OutputChannel:
         self.machine.advance(now)
         self._watch_saturation(now)
         return command
+
+    def published(self, now):
+        """
+        Take note that the last command has gone out.
+
+        The next step is limited by the time since then, and not since its state arrived: however
+        late a command goes out, the next one keeps the rate limit as others see it.
+
+        Parameters
+        ----------
+        now : float
+            s.
+
+        """
+        self._last_time = now
 
     def tick(self, now, state_age):
         """

@@ -64,8 +64,10 @@ class JointStateBuffer:
         self._velocity = [math.nan] * len(names)
         self._time = [-math.inf] * len(names)
         self._stamp = [0] * len(names)
+        self._newest_stamp = 0
         self._oldest = self._forgotten = -math.inf
         self._jumps = 0
+        self._jumped_joint = -1
         self._clock = 0
         self._known_names = None
         self._pairs: list[tuple[int, int]] = []
@@ -137,7 +139,8 @@ class JointStateBuffer:
         except RejectedStateError as error:
             self.rejected[error.kind] += 1
             raise
-        self._jumps = 0
+        if self._jumps and any(target == self._jumped_joint for _, target in self._needed_pairs):
+            self._jumps = 0  # it is the joint itself that stands where it may
         self.accepted += 1
 
     def _update(self, now, names, positions, velocities, stamp, clock):
@@ -166,10 +169,13 @@ class JointStateBuffer:
             velocity[target] = velocities[source] if has_velocities else math.nan
             time[target] = now
             stamps[target] = stamp
+        self._newest_stamp = max(stamp, self._newest_stamp)
         self._oldest = now if is_complete else min(
             (self._time[i] for i in self._needed), default=-math.inf)
 
     def _check_order(self, pairs, stamp, clock):
+        if stamp > self._newest_stamp:
+            return
         last = max((self._stamp[target] for _, target in pairs), default=0)
         # A stamp that was true once and is ahead by now: the clock was set back, and what was
         # measured before says nothing about the order any more.
@@ -181,19 +187,25 @@ class JointStateBuffer:
             f'{(last - stamp) * 1e-9:.3f} s: does a bag loop, or do two nodes publish?')
 
     def _check_steps(self, now, positions, stamp):
-        limits, position, time = self.limits, self._position, self._time
+        small, position = self.limits.small_steps, self._position
         for source, target in self._needed_pairs:
-            if now - time[target] > self.tolerance.seconds:
-                continue  # too long ago to say where the joint can be by now
-            last = self._stamp[target]
-            dt = (stamp - last) * 1e-9 if stamp and last else now - time[target]
-            if limits.is_impossible(target, position[target], positions[source], dt):
-                self._jumped(target, positions[source], dt)
+            # Nearly every step is possible in however short a time.
+            if not -small[target] <= positions[source] - position[target] <= small[target]:
+                self._check_step(target, now, positions[source], stamp)
+
+    def _check_step(self, joint, now, position, stamp):
+        if now - self._time[joint] > self.tolerance.seconds:
+            return  # too long ago to say where the joint can be by now
+        last = self._stamp[joint]
+        dt = (stamp - last) * 1e-9 if stamp and last else now - self._time[joint]
+        if self.limits.is_impossible(joint, self._position[joint], position, dt):
+            self._jumped(joint, position, dt)
 
     def _jumped(self, joint, position, dt):
         text = ('expected a position that the joint can have reached, got '
                 + self.limits.describe_jump(joint, self._position[joint], position, dt))
         self._jumps += 1
+        self._jumped_joint = joint
         if self._jumps < MAX_JUMPS:
             raise RejectedStateError('jump', text)
         self.forget()
@@ -211,6 +223,7 @@ class JointStateBuffer:
         self._jumps = 0
         self._time = [-math.inf] * len(self._names)
         self._stamp = [0] * len(self._names)
+        self._newest_stamp = 0
 
     def _finite_pairs(self, positions):
         wrong = {target for source, target in self._pairs

@@ -21,6 +21,8 @@ class EffortLimiter:
 
     Attributes
     ----------
+    names : tuple of str
+        Of the m joints.
     is_saturated : bool
         Whether any joint was clamped by the last call.
     saturations : list of int
@@ -52,7 +54,7 @@ class EffortLimiter:
         self._rate_limits = np.array(rate_limits, dtype=float).tolist()
         self._scale = np.array(scale, dtype=float).tolist()
         m = len(self._limits)
-        self._names = tuple(names) or tuple(f'joint {i}' for i in range(m))
+        self.names = tuple(names) or tuple(f'joint {i}' for i in range(m))
         self._last = [0.0] * m
         self._wanted = [0.0] * m
         self.is_saturated = False
@@ -62,13 +64,18 @@ class EffortLimiter:
     def saturation(self):
         """Return in words which joints were clamped by the last call: wanted and limit."""
         return '; '.join(f'{name}: {wanted:.6g} limited to {limit:.6g}'
-                         for name, wanted, limit in zip(self._names, self._wanted, self._limits,
+                         for name, wanted, limit in zip(self.names, self._wanted, self._limits,
                                                         strict=True) if abs(wanted) > limit)
 
     @property
     def last(self):
         """The last command, shape (m,), a copy."""
         return np.array(self._last)
+
+    def describe_last(self):
+        """Return the last command in words: a joint and its effort each."""
+        return ', '.join(f'{name}: {effort:.6g}' for name, effort in zip(
+            self.names, self._last, strict=True))
 
     def reset(self):
         """Take zero for the last command."""

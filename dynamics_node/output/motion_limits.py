@@ -15,6 +15,8 @@ class MotionLimits:
     Attributes
     ----------
     names : tuple of str
+    small_steps : list of float
+        How far each joint can move between any two messages, rad or m.
 
     """
 
@@ -38,6 +40,7 @@ class MotionLimits:
         # not arrays: plain numbers are several times as fast, and every state asks.
         self._velocity = [math.inf if math.isnan(limit) else float(limit) for limit in velocity]
         self._fastest = [VELOCITY_MARGIN * limit for limit in self._velocity]
+        self.small_steps = [limit * SHORTEST_STEP for limit in self._fastest]
         self._lower = [float(low) for low, _ in position]
         self._upper = [float(high) for _, high in position]
         self._is_continuous = [bool(is_endless) for is_endless in is_continuous]

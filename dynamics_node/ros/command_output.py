@@ -83,7 +83,7 @@ class CommandOutput:
         """Take over parameters and the limits of the robot in force."""
         self.channel.settings = self._settings()
         if self.channel.machine.is_on:
-            self._look_again_in(STOP_STEP)  # the timeout may have become shorter
+            self._look_within(STOP_STEP)  # the timeout may have become shorter
         robot = self._get_robot()
         if robot is None:
             return
@@ -121,7 +121,7 @@ class CommandOutput:
 
     def begin(self, notes=()):
         """
-        Switch the output on, from zero; whether it may be has been found out before.
+        Switch the output on; whether it may be has been found out before.
 
         Parameters
         ----------
@@ -154,6 +154,13 @@ class CommandOutput:
         if self.channel.machine.is_on:
             self._look_again_in(self.channel.next_look(age))
 
+    def _look_within(self, seconds):
+        # Never later than was planned: what comes again and again, like a flood of parameters,
+        # would otherwise put the look off for ever.
+        planned = self._watchdog.time_until_next_call()
+        if planned is None or planned > seconds * 1e9:
+            self._look_again_in(seconds)
+
     def _look_again_in(self, seconds):
         # Only when a state can have become stale, or a stop goes on: a timer that runs at a
         # fixed rate instead costs as much as a stream of joint states of that rate.
@@ -163,11 +170,12 @@ class CommandOutput:
     def _publish(self, command):
         self._message.data = to_field(command)
         self._publisher.publish(self._message)
+        self.channel.published(time.monotonic())
         self.commands += 1
 
     def _changed(self, state, reason):
         if self.channel.machine.is_on:
-            self._look_again_in(STOP_STEP)
+            self._look_within(STOP_STEP)
         else:
             self._watchdog.cancel()
         message = OutputStateMessage(state=int(state), name=state.name, reason=reason)

@@ -10,8 +10,7 @@ from .guard import logged
 
 # How often it is looked whether all have answered, s.
 STEP = 0.02
-# How long a listener's parameter service may take to be found, and to answer, s.
-FIND_WITHIN = 0.3
+# How long a listener's parameter service may take to be found and to answer, s.
 ANSWER_WITHIN = 1.0
 
 
@@ -82,7 +81,9 @@ class ControllerCheck:
     @logged
     def _look(self):
         elapsed = time.monotonic() - self._begun
-        if any(question.is_open(elapsed) for question in self._questions):
+        for question in self._questions:  # each of them, however long another one takes
+            question.ask()
+        if elapsed < ANSWER_WITHIN and any(item.is_unanswered for item in self._questions):
             return
         self._timer.cancel()
         questions, self._questions = self._questions, []
@@ -90,8 +91,8 @@ class ControllerCheck:
         for question in questions:
             refusals += question.refusals(self._joint_names)
             if question.is_unanswered:
-                notes.append(f'{question.name} did not say within {ANSWER_WITHIN:g} s which '
-                             'joints it drives')
+                notes.append(f'{question.name}, which listens there, did not say within '
+                             f'{ANSWER_WITHIN:g} s which joints it drives')
             question.close()
         self._on_done(refusals, notes)
 
@@ -109,22 +110,18 @@ class _Question:
             node.get_logger().warning(f'{name} cannot be asked for its joints: {error}')
         self._answers = {}
 
-    def is_open(self, elapsed):
-        """Ask as soon as that is possible; tell whether the answers are worth waiting for."""
-        if self._client is None:
-            return False
-        if not self._answers:
-            if not self._client.service_is_ready():
-                return elapsed < FIND_WITHIN
-            # One at a time: rclcpp answers nothing at all if one of several does not exist.
-            self._answers = {name: self._client.call_async(GetParameters.Request(names=[name]))
-                             for name in ('joints', 'interface_name')}
-        return elapsed < ANSWER_WITHIN and self.is_unanswered
+    def ask(self):
+        """Ask, as soon as that is possible."""
+        if self._answers or self._client is None or not self._client.service_is_ready():
+            return
+        # One at a time: rclcpp answers nothing at all if one of several does not exist.
+        self._answers = {name: self._client.call_async(GetParameters.Request(names=[name]))
+                         for name in ('joints', 'interface_name')}
 
     @property
     def is_unanswered(self):
-        """Whether it has parameters, but did not tell them in time."""
-        return not all(answer.done() for answer in self._answers.values())
+        """Whether it has not told its parameters yet."""
+        return not self._answers or not all(answer.done() for answer in self._answers.values())
 
     def refusals(self, joint_names):
         """Return what its parameters say against driving it, as a list of str."""

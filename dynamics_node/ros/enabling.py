@@ -40,6 +40,7 @@ class Enabling:
         self._rivals = rivals
         self._controllers = ControllerCheck(node, output.topic)
         self._waiting = []
+        self._asked_for = ()
         self._service = LateAnswers(node, SetBool, '~/enable', self._requested)
 
     def enable(self, answer):
@@ -63,7 +64,8 @@ class Enabling:
         else:
             self._waiting.append(answer)
             if not self._controllers.is_busy:
-                self._controllers.begin(self._get_robot().joint_names, self._checked)
+                self._asked_for = self._get_robot().joint_names
+                self._controllers.begin(self._asked_for, self._checked)
 
     def disable(self, answer):
         """Switch the output off; `answer` as for `enable`."""
@@ -103,11 +105,24 @@ class Enabling:
 
     def _checked(self, refusals, notes):
         # All of it anew: time has passed.
-        reasons = self.refusals() + refusals if self._waiting else []
+        reasons = self.refusals() + self._other_joints() + refusals if self._waiting else []
         if reasons:
             self._answer_all(False, _refused(reasons))
         elif self._waiting:
-            self._answer_all(True, self._output.begin(notes))
+            self._answer_all(True, self._output.begin(notes + self._unseen()))
+
+    def _other_joints(self):
+        # What the controllers have said was compared with the joints of that time.
+        robot = self._get_robot()
+        if robot is None or robot.joint_names == self._asked_for:
+            return []
+        return ['the robot description has changed its joints while the controllers were asked: '
+                'ask again']
+
+    def _unseen(self):
+        names = self._get_robot().joints_without_velocity_limit()
+        return [f'jumps and runaway are not noticed of {", ".join(names)}: the URDF has no '
+                'velocity limit there'] if names else []
 
     def _answer_all(self, success, message):
         waiting, self._waiting = self._waiting, []

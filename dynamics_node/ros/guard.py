@@ -36,17 +36,19 @@ def logged(method):
 
 
 def guarded_service(method):
-    """Wrap a service callback: an exception is logged, and the answer says that it failed."""
+    """
+    Wrap a service callback of an object with `logger` and `failed`.
+
+    An exception is logged; the answer is what `failed(response, message)` makes of a new response.
+
+    """
     @functools.wraps(method)
     def safe(self, request, response):
         try:
             return method(self, request, response)
         except Exception as error:
             _log(self, method, error)
-            failed = type(response)()
-            failed.success = False
-            failed.message = f'internal error: {error}'
-            return failed
+            return self.failed(type(response)(), f'internal error: {error}')
     return safe
 
 

@@ -103,8 +103,8 @@ def _bring_to_rest(node, executor, reason):
         _spin_once(node, executor, STOP_SLICE)
     if output.channel.machine.is_on:
         node.logger.error(
-            f'the stop did not end within {GIVE_UP_AFTER:g} s: the last efforts are '
-            f'{output.channel.limiter.last.tolist()}; effort_rate_limits are too small for it')
+            f'the stop did not end within {GIVE_UP_AFTER:g} s: the last efforts stay in force, '
+            f'{output.channel.limiter.describe_last()}; effort_rate_limits are too small for it')
     output.flush(0.2)
 
 

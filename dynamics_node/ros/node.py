@@ -204,7 +204,9 @@ class DynamicsNode(Node):
 
     def _output_changed(self):
         if self.output.channel.machine.is_driving:
-            self._look_for_rivals.reset()
+            # A start that begins again and again must not put the look off.
+            if self._look_for_rivals.is_canceled():
+                self._look_for_rivals.reset()
         else:
             self._look_for_rivals.cancel()
         self._diagnostics.publish()

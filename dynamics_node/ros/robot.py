@@ -114,6 +114,12 @@ class Robot:
         return [name for name, limit in zip(self.joint_names, self.effort_limits(given),
                                             strict=True) if np.isnan(limit)]
 
+    def joints_without_velocity_limit(self):
+        """Return the names of the chosen joints whose speed has no limit, a list of str."""
+        limits = self.model.velocity_limits[self.selection.index]
+        return [name for name, limit in zip(self.joint_names, limits, strict=True)
+                if np.isnan(limit)]
+
     def is_mass_matrix_positive_definite(self):
         """Tell whether D of the chosen joints is positive definite at the newest state."""
         index = self.selection.index

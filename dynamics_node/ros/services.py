@@ -86,6 +86,16 @@ class DynamicsServices:
             response.potential_energy = float(_finite(query.model.potential_energy(query.q)))
         return self._answer(request, response, fill)
 
+    def failed(self, response, message):
+        """Make a new response the answer to a request that failed."""
+        # Its arrays are empty as they are; energies are no arrays, and 0 J would be a value.
+        response.success = False
+        response.message = message
+        for name in ('kinetic_energy', 'potential_energy'):
+            if hasattr(response, name):
+                setattr(response, name, np.nan)
+        return response
+
     def _answer(self, request, response, fill):
         try:
             robot = self._get_robot()
@@ -95,22 +105,12 @@ class DynamicsServices:
             query = _Query(robot, request, self._parameters['state_timeout'])
             fill(query)
         except DynamicsError as error:
-            return _failed(type(response)(), str(error))
+            return self.failed(type(response)(), str(error))
         response.joint_names = query.names
         response.position = query.part(query.q)
         response.success = True
         response.message = query.message
         return response
-
-
-def _failed(response, message):
-    # Empty arrays come with a new response; energies are no arrays, and 0 J would be a value.
-    response.success = False
-    response.message = message
-    for name in ('kinetic_energy', 'potential_energy'):
-        if hasattr(response, name):
-            setattr(response, name, np.nan)
-    return response
 
 
 def _finite(values):

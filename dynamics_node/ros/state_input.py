@@ -78,6 +78,8 @@ class StateInput:
 
     @guarded
     def _bytes_received(self, data, info):
+        # Also of what cannot be read: the next one would otherwise count it as skipped.
+        self._count_skipped(info)
         robot = self._get_robot()
         try:
             message = self._reader.read(data)
@@ -88,14 +90,14 @@ class StateInput:
                 robot.buffer.rejected[error.kind] += 1
             self._warn(error)
             return
-        self._take(robot, message, info)
+        self._take(robot, message)
 
     @guarded
     def _received(self, message, info):
-        self._take(self._get_robot(), message, info)
+        self._count_skipped(info)
+        self._take(self._get_robot(), message)
 
-    def _take(self, robot, message, info):
-        self._count_skipped(info['publication_sequence_number'])
+    def _take(self, robot, message):
         if robot is None:
             return
         now = time.monotonic()
@@ -130,8 +132,9 @@ class StateInput:
             self.logger.info('joint_states has no stamp, arrival time is used')
         return self._clock.now().to_msg()
 
-    def _count_skipped(self, number):
+    def _count_skipped(self, info):
         # Each publisher counts for itself, and which one it was rclpy does not say.
+        number = info['publication_sequence_number']
         if number is not None and self._sequence_number and self.publishers == 1:
             self.skipped += max(number - self._sequence_number - 1, 0)
         self._sequence_number = number or 0

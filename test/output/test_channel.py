@@ -5,6 +5,7 @@ import math
 from dynamics_node.output import OutputChannel
 from dynamics_node.output.channel import (
     LONGEST_SATURATION,
+    MAX_RESTARTS,
     OutputSettings,
     SHORTEST_LOOK,
     STOP_STEP,
@@ -62,6 +63,18 @@ def test_the_start_ramps_from_zero_to_the_torque():
     assert unit.machine.name == 'ACTIVE'
 
 
+def test_the_rate_limit_counts_from_when_the_last_command_went_out():
+    unit = channel(start_ramp=0.0)
+    unit.enable(0.0)
+    np.testing.assert_allclose(unit.on_effort(0.01, TORQUE), [1.0, -0.5])
+    unit.published(0.018)
+    np.testing.assert_allclose(unit.on_effort(0.02, TORQUE), [1.2, -0.6])
+    unit.published(0.03)
+    unit.stop(0.03, 'disabled on request')
+    unit.tick(0.03, 0.0)
+    np.testing.assert_allclose(unit.limiter.last, [1.2, -0.6])
+
+
 def test_a_stop_ramps_to_zero_and_ends_with_zeros():
     unit = active()
     unit.stop(1.0, 'disabled on request')
@@ -98,6 +111,15 @@ def test_enabling_after_hold_starts_from_what_was_held():
     np.testing.assert_allclose(unit.on_effort(5.0, TORQUE / 2), TORQUE)
     np.testing.assert_allclose(unit.on_effort(5.25, TORQUE / 2), 0.75 * TORQUE)
     np.testing.assert_allclose(unit.on_effort(5.5, TORQUE / 2), TORQUE / 2)
+
+
+def test_what_was_held_belongs_to_its_joints():
+    unit = active(stop_behavior='hold')
+    unit.stop(1.0, 'disabled on request')
+    stopped(unit, 1.0)
+    unit.set_limiter(LIMITS, RATES, np.ones(2), ('of another', 'robot'))
+    unit.enable(5.0)
+    np.testing.assert_array_equal(unit.on_effort(5.0, TORQUE), [0, 0])
 
 
 def test_a_stale_state_stops_and_latches_with_both_numbers():
@@ -225,6 +247,29 @@ def test_a_restart_goes_from_the_last_command_to_the_new_torque_by_the_start_ram
     assert unit.machine.name == 'ACTIVE'
 
 
+def test_restarts_that_let_no_start_end_are_a_fault():
+    unit, now = active(), 1.0
+
+    def restart(times, pause):
+        nonlocal now
+        for _ in range(times):
+            unit.restart(now, 'the clock went back')
+            for step in np.arange(0.0, pause, 0.01):
+                unit.on_effort(now + step, -TORQUE)
+            now += pause
+    restart(2 * MAX_RESTARTS, 0.6)
+    assert unit.machine.name == 'ACTIVE'
+    restart(MAX_RESTARTS, 0.1)
+    assert unit.machine.name == 'STARTING'
+    restart(1, 0.1)
+    assert unit.machine.name == 'STOPPING'
+    assert unit.machine.fault == ('the clock went back, 4 times before the start ramp was over')
+    stopped(unit, now)
+    assert unit.enable(now + 2.0)
+    unit.restart(now + 2.0, 'the clock went back')
+    assert unit.machine.name == 'STARTING'
+
+
 def test_a_fault_of_the_arm_stops_an_output_that_is_on_and_only_that():
     unit = channel()
     unit.fault(0.0, 'runaway')
@@ -264,4 +309,12 @@ def test_an_arm_that_must_not_be_driven_is_not_held_either():
     unit = active(stop_behavior='hold')
     unit.fault(1.0, 'runaway')
     np.testing.assert_array_equal(stopped(unit, 1.0)[-1], [0, 0])
+    assert (unit.machine.name, unit.machine.reason) == ('FAULT', 'runaway')
+
+
+def test_a_fault_takes_away_what_a_stop_has_just_begun_to_hold():
+    unit = active(stop_behavior='hold')
+    unit.stop(1.0, 'disabled on request')
+    unit.fault(1.005, 'runaway')
+    np.testing.assert_array_equal(stopped(unit, 1.01)[-1], [0, 0])
     assert (unit.machine.name, unit.machine.reason) == ('FAULT', 'runaway')

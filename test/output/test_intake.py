@@ -11,7 +11,7 @@ from dynamics_node.output import (
     take_state,
 )
 from dynamics_node.output.channel import OutputSettings
-from hypothesis import given, note
+from hypothesis import example, given, note
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -104,8 +104,8 @@ def test_a_clock_that_goes_back_drops_the_state_and_ramps_again():
 def test_a_clock_that_goes_back_again_and_again_is_no_sign_of_life():
     path, (elbow, _) = active()
     for i in range(1, 20):
-        assert path.take(1.0 + 0.01 * i, [elbow], names=['elbow'],
-                         clock=(50 - i) * SECOND) is None
+        clock = (50 - i) * SECOND if i <= 3 else 47 * SECOND + i * SECOND // 100
+        assert path.take(1.0 + 0.01 * i, [elbow], names=['elbow'], clock=clock) is None
         path.tick(1.0 + 0.01 * i)
     assert path.channel.machine.name == 'STOPPING'
     assert 'stale' in path.channel.machine.fault
@@ -120,6 +120,14 @@ def test_while_the_simulation_pauses_the_steady_clock_goes_on():
         path.tick(1.0 + 0.01 * i)
     assert path.channel.machine.name == 'STOPPING'
     assert path.channel.machine.fault.startswith('joint_states stale: last 0.1')
+
+
+def test_two_clocks_at_once_do_not_freeze_the_effort():
+    path, (elbow, wrist) = active()
+    for i in range(1, 40):
+        path.take(1.0 + 0.01 * i, [elbow, wrist], clock=(50 - i % 2) * SECOND)
+    assert path.channel.machine.name == 'STOPPING'
+    assert path.channel.machine.fault.startswith('the clock went back by 1.000 s')
 
 
 def test_without_a_clock_there_is_no_torque():
@@ -150,6 +158,12 @@ def stamp_of(choice, clock):
     return clock - round(choice * SECOND) if isinstance(choice, float) else choice * SECOND
 
 
+# An arm that moves as fast as it can while ACTIVE needs a larger step than its rate limit.
+SWING = [(0.0, ('good', 1.4, 0.2)), (0.0, ('enable',)), *[(0.01, ('good', 1.4, 0.2))] * 60,
+         (0.01, ('good', 1.345, 0.2))]
+
+
+@example(behavior='hold', events=SWING)
 @given(st.sampled_from(['ramp_to_zero', 'zero', 'hold']),
        st.lists(st.tuples(st.one_of(st.just(0.01), st.floats(0, 0.5)), EVENTS), max_size=80))
 def test_whatever_comes_no_command_is_wrong_and_none_comes_while_off(behavior, events):

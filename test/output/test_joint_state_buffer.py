@@ -228,6 +228,17 @@ def test_good_steps_in_between_begin_the_count_anew():
         stamped(unit, 0.02 * i + 0.02)
 
 
+def test_states_of_other_joints_do_not_begin_the_count_anew():
+    # An arm and its gripper have a broadcaster each.
+    unit = moving()
+    stamped(unit, 0.0)
+    for i in range(MAX_JUMPS):
+        stamped(unit, 0.02 * i + 0.01, 'c', (0.0,))
+        with pytest.raises(RejectedStateError) as caught:
+            stamped(unit, 0.02 * i + 0.02, 'ab', (2.5, 0.0))
+    assert caught.value.is_fault
+
+
 def test_after_silence_any_position_is_believed():
     unit = moving()
     stamped(unit, 0.0)

@@ -66,6 +66,12 @@ def test_infinity_is_refused_although_a_clamp_would_swallow_it_only_if_not_finit
         limiter().command([np.nan, 0.0], 1.0, 1.0)
 
 
+def test_the_last_command_is_told_by_joint():
+    unit = EffortLimiter(LIMITS, RATES, np.ones(2), ('shoulder', 'elbow'))
+    unit.command([3.0, -1.0], 1.0, 1.0)
+    assert unit.describe_last() == 'shoulder: 3, elbow: -1'
+
+
 def test_another_length_is_refused():
     for effort in ([1.0], [1.0, 1.0, 1.0], []):
         with pytest.raises(InvalidEffortError, match='expected 2 efforts'):

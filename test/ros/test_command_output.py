@@ -3,9 +3,13 @@
 import functools
 import itertools
 import signal
+import time
 
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node import RobotModel
+from dynamics_node.ros.command_output import CommandOutput
+from dynamics_node.ros.parameter_table import PARAMETERS
+from dynamics_node.ros.robot import Robot
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -116,6 +120,24 @@ def test_a_timeout_that_becomes_shorter_holds_at_once(client, start):
     assert result.successful
     client.until(client.output_is('FAULT'), timeout=5.0)
     assert 'limit 0.200 s' in client.outputs[-1].reason
+
+
+def test_parameters_set_without_end_do_not_put_the_watchdog_off(client):
+    robot = Robot(RobotModel.from_urdf(PENDULUM), ())
+    parameters = {item.name: item.default for item in PARAMETERS}
+    output = CommandOutput(client.node, parameters, lambda: robot, lambda: None)
+    output.configure()
+    robot.buffer.update(time.monotonic(), ['hinge'], [0.0])
+    output.channel.enable(time.monotonic())
+    look = output._watchdog.time_until_next_call
+    while (planned := look()) > 5e6:
+        pass
+    output.configure()
+    assert look() < planned
+    output.channel.restart(time.monotonic(), 'the clock went back')
+    assert look() < planned
+    client.until(lambda: output.channel.machine.name == 'FAULT')
+    assert 'stale' in output.channel.machine.reason
 
 
 def test_half_of_the_joints_alone_do_not_keep_the_output_alive(client, start):

@@ -14,8 +14,8 @@ def controllers():
     """Return a function that starts a listener with parameters."""
     clients = []
 
-    def start(name, parameter_services=True, **parameters):
-        client = Client(name, start_parameter_services=parameter_services)
+    def start(name, start_parameter_services=True, **parameters):
+        client = Client(name, start_parameter_services=start_parameter_services)
         for key, value in parameters.items():
             client.node.declare_parameter(key, value)
         client.node.create_subscription(Float64MultiArray, 'efforts', lambda _: None, 1)
@@ -71,11 +71,16 @@ def test_other_joints_another_order_and_another_interface_are_refused_in_words(
         'an effort controller']
 
 
-def test_whoever_does_not_answer_is_named_and_whoever_cannot_is_not(client, controllers):
-    deaf = controllers('deaf', joints=['elbow', 'shoulder'])
-    plain = controllers('plain', parameter_services=False)
-    assert asked(client, [plain], [deaf]) == (
-        [], ['/deaf did not say within 1 s which joints it drives'])
+def test_whoever_does_not_answer_is_named_and_does_not_hide_the_others(client, controllers):
+    deaf = controllers('a_deaf_one', joints=['elbow', 'shoulder'])
+    plain = controllers('b_plain_one', start_parameter_services=False)
+    other = controllers('z_controller', joints=['elbow', 'shoulder'])
+    refusals, notes = asked(client, [plain, other], [deaf])
+    assert notes == [
+        f'/{name}, which listens there, did not say within 1 s which joints it drives'
+        for name in ('a_deaf_one', 'b_plain_one')]
+    [refusal] = refusals
+    assert refusal.startswith('/z_controller has another order')
 
 
 def test_it_can_be_asked_again(client, controllers):

@@ -1,5 +1,6 @@
 """What speaks against enabling, and what happens while the controllers are asked."""
 
+from pathlib import Path
 import time
 from types import SimpleNamespace
 
@@ -39,7 +40,7 @@ def parts(client):
     """Return an `Enabling` whose controllers answer when the test says so, and what it uses."""
     robot = Robot(RobotModel.from_urdf(PENDULUM), ())
     parts = SimpleNamespace(robot=robot, output=Output(), rivals=[], asked=[])
-    parameters = {'state_timeout': 0.5, 'effort_limits': ()}
+    parameters = {'state_timeout': 60.0, 'effort_limits': ()}
     parts.enabling = Enabling(client.node, parameters, lambda: parts.robot, parts.output,
                               SimpleNamespace(found=lambda: parts.rivals))
     parts.enabling._controllers = SimpleNamespace(
@@ -68,13 +69,23 @@ def test_the_output_begins_when_the_controllers_have_nothing_against_it(parts):
     assert given[-1] == (True, 'already enabled: STARTING')
 
 
+def test_joints_whose_speed_has_no_limit_are_named(parts):
+    given, answer = answers()
+    parts.robot.joints_without_velocity_limit = lambda: ['hinge']
+    parts.enabling.enable(answer)
+    parts.asked[0][1]([], [])
+    assert given == [(True, 'enabled')]
+    assert parts.output.begun == [['jumps and runaway are not noticed of hinge: the URDF has no '
+                                   'velocity limit there']]
+
+
 def test_every_reason_against_it_is_said_at_once(parts):
     given, answer = answers()
     parts.rivals.append('1 other publisher')
     parts.robot.buffer.forget()
     parts.robot.buffer.rejected['stamp'] = 7
     parts.enabling.enable(answer)
-    assert given == [(False, 'refused: no joint state within 0.5 s for hinge (dropped so far: '
+    assert given == [(False, 'refused: no joint state within 60 s for hinge (dropped so far: '
                              '7 for stamp); 1 other publisher')]
     assert parts.asked == []
 
@@ -100,6 +111,22 @@ def test_what_has_changed_while_they_were_asked_counts(parts):
     parts.robot = None
     parts.asked[0][1]([], [])
     assert given == [(False, 'refused: no robot description yet')]
+
+
+def test_a_robot_with_other_joints_than_the_controllers_were_asked_about_is_refused(parts):
+    given, answer = answers()
+    parts.enabling.enable(answer)
+    description = Path(PENDULUM).read_text()
+    parts.robot = Robot(RobotModel.from_urdf(description.replace('"hinge"', '"pivot"')), ())
+    parts.robot.buffer.update(time.monotonic(), ['pivot'], [0.0])
+    parts.asked[0][1]([], [])
+    assert parts.output.begun == []
+    assert given == [(False, 'refused: the robot description has changed its joints while the '
+                             'controllers were asked: ask again')]
+    parts.enabling.enable(answer)
+    assert parts.asked[1][0] == ('pivot',)
+    parts.asked[1][1]([], [])
+    assert given[-1] == (True, 'enabled')
 
 
 def test_several_requests_at_once_get_one_answer_each(parts):

@@ -23,6 +23,11 @@ class Broken:
         """Fail where it does not matter."""
         raise ZeroDivisionError
 
+    def failed(self, response, message):
+        """Answer."""
+        response.message = message
+        return response
+
     @guarded_service
     def service(self, request, response):
         """Fail after having promised success."""

@@ -28,6 +28,12 @@ def test_joints_without_an_effort_limit_are_named_unless_one_is_given():
     np.testing.assert_array_equal(robot.effort_limits((5.0,)), [5.0])
 
 
+def test_joints_without_a_velocity_limit_are_named():
+    assert Robot(RobotModel.from_urdf(TEXT), ()).joints_without_velocity_limit() == []
+    slow = RobotModel.from_urdf(TEXT.replace('velocity="20"', 'velocity="0"'))
+    assert Robot(slow, ()).joints_without_velocity_limit() == ['hinge']
+
+
 def test_the_measured_position_is_refused_while_a_chosen_joint_is_not_fresh():
     model = RobotModel.from_urdf(ARM7)
     chosen = model.joint_names[2], model.joint_names[0]

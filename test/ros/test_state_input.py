@@ -80,6 +80,10 @@ def test_the_newest_state_wins_and_those_before_it_are_counted(client, receiver)
     client.until(lambda: receiver.received[-1][0] == [0.008], receiver.spin)
     assert len(receiver.received) == 2
     assert receiver.input.skipped - before == 8
+    at(client, *(0.001 * i for i in range(9, 12)))()
+    client.during(0.02)
+    client.until(lambda: receiver.received[-1][0] == [0.011], receiver.spin)
+    assert receiver.input.skipped - before == 10
 
 
 def test_a_position_beyond_its_limits_is_computed_with_and_warned_about(client, receiver):
@@ -124,3 +128,21 @@ def test_a_stamp_is_handed_on_and_a_missing_one_is_the_arrival(client, receiver)
     client.until(lambda: len(receiver.received) == 2, receiver.spin)
     stamp = receiver.received[-1][1]
     assert (stamp.sec, stamp.nanosec) >= (before.sec, before.nanosec)
+
+
+def test_what_cannot_be_read_is_not_counted_as_skipped_besides(client):
+    receiver = Receiver(raw=True)
+    try:
+        until_received(client, receiver, 0.0)
+        assert receiver.input.count_publishers() == 1
+        at(client, 0.0)()
+        client.until(lambda: receiver.received, receiver.spin)
+        before, rejected = receiver.input.skipped, receiver.robot.buffer.rejected
+        client.states.publish(b'\x00\x01\x00\x00no joint state')
+        client.until(lambda: rejected['unreadable'] == 1, receiver.spin)
+        receiver.received.clear()
+        at(client, 0.0)()
+        client.until(lambda: receiver.received, receiver.spin)
+        assert receiver.input.skipped == before
+    finally:
+        receiver.client.close()

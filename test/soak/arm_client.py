@@ -1,6 +1,8 @@
 """What somebody beside the robot sees and does: states, commands, services of all processes."""
 
+import bisect
 from collections import deque
+import itertools
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -139,7 +141,9 @@ class ArmClient(Client):
 
     def truth_between(self, begin, end):
         """
-        Return what the robot itself said within a time, s; wait until it has said all of it.
+        Return what the robot itself said within a time, s, and just before.
+
+        Waits until it has said all of it.
 
         Returns
         -------
@@ -148,7 +152,10 @@ class ArmClient(Client):
 
         """
         self.until(lambda: self.truth[-1][0] >= end)
-        chosen = [(time, *self._read(data)) for time, data in self.truth if begin <= time <= end]
+        times = [time for time, _ in self.truth]
+        first = max(bisect.bisect(times, begin) - 1, 0)
+        chosen = [(time, *self._read(data)) for time, data in itertools.islice(
+            self.truth, first, bisect.bisect(times, end))]
         return tuple(np.array(column) for column in zip(*chosen))
 
     def set_fault(self, fault):
@@ -159,6 +166,11 @@ class ArmClient(Client):
     def set_clock_offset(self, seconds):
         """Let the relay publish /clock and move all stamps; NaN: no longer."""
         self.set_parameter('relay', 'clock_offset', ParameterValue(
+            type=ParameterType.PARAMETER_DOUBLE, double_value=seconds))
+
+    def set_state_timeout(self, seconds):
+        """Change how old a joint state may be for the node."""
+        self.set_parameter('dynamics_node', 'state_timeout', ParameterValue(
             type=ParameterType.PARAMETER_DOUBLE, double_value=seconds))
 
     def set_parameter(self, node, name, value):

@@ -12,7 +12,7 @@ from .arm_client import ArmClient
 from .processes import RigProcesses
 
 # Time for imports, compilation and discovery on a slow machine, s.
-START_UP = 40.0
+START_UP = 90.0
 # As by default in the node, whose limits are those of the URDF: from zero to the limit, s.
 FULL_RATE = 0.1
 # An arm that stands so near its start pose need not be brought back, rad.

@@ -13,9 +13,6 @@ from .latency import Latency
 from .line import stamp_of
 from .rig import NEAR
 
-# The share of the time after which memory, files and threads must not grow any more, but not
-# before so many seconds: until then the node may still load its machine code.
-WARM_UP, SHORTEST_WARM_UP = 0.1, 30.0
 # States of the line: some seconds, and a flood as well.
 REMEMBERED = 20_000
 # Calm between two faults, s.
@@ -61,8 +58,9 @@ class Soak:
     books : Books
     latency : Latency
     before, after : dict
-        Vitals of the node, see `RigProcesses.vitals`; no `before` in a run shorter than the
-        warm-up.
+        Vitals of the node, see `RigProcesses.vitals`. `before` is when every kind of fault has
+        come once, because DDS keeps a buffer of the size of the largest message that it has
+        seen; a run that does not come so far has none.
     rejected : Counter
         Joint states that the node has refused, by kind.
     duration : float
@@ -89,7 +87,7 @@ class Soak:
         self.rejected = Counter()
         self.duration = 0.0
         self._rig, self._client, self._rng, self._say = rig, rig.client, rng, say
-        self._fresh = []
+        self._fresh, self._rounds = [], 0
         self._written = deque(maxlen=REMEMBERED)
         node, client = rig.client.node, rig.client
         # As bytes, of which only the stamps are read: there are a thousand in a second.
@@ -108,9 +106,7 @@ class Soak:
         rig.float()
         self._open_books()
         rig.float()
-        while (elapsed := time.monotonic() - begin) < seconds:
-            if not self.before and elapsed >= max(WARM_UP * seconds, SHORTEST_WARM_UP):
-                self.before = rig.processes.vitals('node')
+        while time.monotonic() - begin < seconds:
             self._one_fault(self._choose())
             self._settle()
         self._close_books()
@@ -129,6 +125,9 @@ class Soak:
     def _choose(self):
         # Every kind once before any comes again, but in no order that repeats.
         if not self._fresh:
+            self._rounds += 1
+            if self._rounds == 2:
+                self.before = self._rig.processes.vitals('node')
             self._fresh = [fault for fault in FAULTS if self._rng.random() < fault.weight]
             self._rng.shuffle(self._fresh)
         return self._fresh.pop()

@@ -96,7 +96,7 @@ def test_whatever_is_lost_leaked_or_wrong_is_said(soak, client, damage, sentence
     assert any(sentence in failure for failure in failures(soak, client))
 
 
-def test_a_run_shorter_than_the_warm_up_judges_no_leak(soak, client):
+def test_a_run_in_which_not_every_fault_came_judges_no_leak(soak, client):
     soak.before = {}
     soak.after['memory'] = 1e4
     assert failures(soak, client) == []
