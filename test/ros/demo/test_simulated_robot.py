@@ -119,8 +119,11 @@ def test_reset_travels_back_without_a_jump(robot):
     assert robot.call('reset').success
     assert not robot.call('set_brakes', data=False).success  # it is on its way
     robot.wait_for(lambda: robot.positions() == pytest.approx(start, abs=1e-9))
-    steps = np.abs(np.diff([state.position for state in robot.states[first:]], axis=0))
-    assert steps.max() < 2.6 * 0.05  # the fastest joint's speed limit, for the longest gap
+    way = robot.states[first:]
+    steps = np.abs(np.diff([state.position for state in way], axis=0)).max(axis=1)
+    gaps = np.diff([state.header.stamp.sec + 1e-9 * state.header.stamp.nanosec for state in way])
+    # The fastest joint's speed limit; a busy machine may leave longer gaps than 0.05 s.
+    assert (steps < 2.6 * np.maximum(gaps, 0.05)).all()
     assert not any(robot.efforts().values())
 
 
