@@ -169,9 +169,13 @@ class Line:
             return [self._rng.randbytes(self._rng.randrange(len(data)))]
         if kind == 1:  # cut off
             return [data[:self._rng.randrange(len(data))]]
-        wrong = bytearray(data)  # some bytes of a good one, behind the stamp
+        # Some bytes of a good one, behind the stamp and before the numbers: whatever bytes a
+        # number has, it is one, and may well be that of an arm that runs away.
+        wrong = bytearray(data)
+        numbers = sum(8 + 8 * len(field) for field in (
+            message.position, message.velocity, message.effort))
         for _ in range(8):
-            wrong[self._rng.randrange(12, len(wrong))] = self._rng.randrange(256)
+            wrong[self._rng.randrange(12, len(wrong) - numbers)] = self._rng.randrange(256)
         return [bytes(wrong)]
 
     # -----------------------------------------------------------------------------------------
