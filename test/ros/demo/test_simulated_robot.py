@@ -37,15 +37,14 @@ def test_joint_states_are_alphabetical_and_complete(robot):
 
 
 def test_joint_states_come_at_about_the_rate(robot):
-    """500 Hz on a machine that has time for it: a busy one gets several tries."""
-    for _ in range(20):
-        states = robot.spin_for(0.6)
-        stamps = [(state.header.stamp.sec, state.header.stamp.nanosec) for state in states]
-        assert stamps == sorted(set(stamps))
-        assert len(states) < 315
-        if len(states) > 200:
-            return
-    raise AssertionError(f'expected 200 states or more within 0.6 s, got {len(states)}')
+    """500 Hz: never more, and less only where a busy machine takes its time."""
+    states = robot.spin_for(1.0)
+    stamps = [state.header.stamp.sec + state.header.stamp.nanosec * 1e-9 for state in states]
+    assert len(states) < 525
+    gaps = np.diff(stamps)
+    assert (gaps > 0.0).all()
+    # The shortest ones tell the rate, however many are missing in between.
+    assert 0.001 < np.quantile(gaps, 0.2) < 0.003
 
 
 def test_the_brakes_hold_at_start_up(robot):
