@@ -16,6 +16,8 @@ import warnings
 from hypothesis import given, HealthCheck, Phase, settings
 from hypothesis import seed as seeded
 
+from .seeds import SIBLINGS
+
 # Seconds of processor time that one input may take; by the clock it takes longer where other
 # processes want the processor. Seconds by the clock after which it is given up.
 MAX_TIME = 1.0
@@ -153,17 +155,23 @@ class Campaign:
 
     def _some(self, count, seed):
         # What hypothesis finds it makes smaller; the last input that fails is the smallest.
-        def examine(data):
-            try:
-                self.take(data)
-            except Exception as error:
-                self._failing = error, data
-                raise
-        self._failing = None
         before = self.result.inputs
+
+        def examine(drawn):
+            for data in drawn:
+                # Enough, unless hypothesis is making an input smaller.
+                if self._failing is None and self.result.inputs >= before + count:
+                    return
+                try:
+                    self.take(data)
+                except Exception as error:
+                    self._failing = error, data
+                    raise
+        self._failing = None
         test = settings(
-            max_examples=count, database=None, deadline=None, derandomize=False,
-            suppress_health_check=list(HealthCheck), phases=(Phase.generate, Phase.shrink),
+            max_examples=max(1, count // SIBLINGS), database=None, deadline=None,
+            derandomize=False, suppress_health_check=list(HealthCheck),
+            phases=(Phase.generate, Phase.shrink),
             report_multiple_bugs=False)(seeded(seed)(given(self.door.inputs())(examine)))
         try:
             test()

@@ -29,8 +29,9 @@ class _Writer:
 
     def doubles(self, values):
         self.count(len(values))
-        for value in values:
-            self.number('d', value)
+        if values:
+            self.number('d', values[0])
+            self.data += struct.pack(f'<{len(values) - 1}d', *values[1:])
 
 
 def joint_state(stamp, frame, names, sequences, lie=(-1, 0)):

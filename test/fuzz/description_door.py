@@ -15,13 +15,13 @@ _LONGEST_PROBLEM = 70_000
 
 
 def inputs():
-    """Return the strategy of inputs."""
+    """Return the strategy of lists of inputs."""
     return descriptions()
 
 
 def warm_up():
     """Load whatever is loaded lazily."""
-    for text in bases():
+    for text in set(bases()):
         _answer(text.encode())
 
 

@@ -8,7 +8,7 @@ from support.robots import ARM7, PENDULUM, random_urdf
 
 from .mutated_bytes import broken
 from .mutated_xml import changed_text, changed_tree, grown_text
-from .seeds import seeds
+from .seeds import seeds, siblings
 
 # Every element that dynamics reads, and those that it must not look at.
 EVERYTHING = """<?xml version="1.0"?>
@@ -47,26 +47,28 @@ _DECLARED = ('utf-8', 'utf-16', 'shift_jis', 'utf-7', 'nonsense', '')
 @cache
 def bases():
     """Return whole robots, as text: the small ones come often, because they are quick."""
-    small = [random_urdf(seed, joints=1 + seed % 3) for seed in range(4)]
-    return (EVERYTHING, EVERYTHING, *small, PENDULUM.read_text(), ARM7.read_text())
+    small = [random_urdf(seed, joints=1 + seed % 3) for seed in range(6)]
+    return (*[EVERYTHING] * 8, *small, PENDULUM.read_text(), ARM7.read_text())
 
 
 def descriptions():
     """
-    Return a strategy of bytes that may, or may not, describe a robot.
+    Return a strategy of lists of bytes that may, or may not, describe a robot.
 
     Hypothesis chooses a robot and a list of seeds, one per change, and makes a list that finds
     something shorter. What a change does comes from its seed: to choose every place and value by
     hypothesis takes ten times as long as to read the robot.
 
     """
-    ways = {-1: seeds.map(lambda seed: grown_text(random.Random(seed)).encode()),
-            -2: st.binary(max_size=200),
-            -3: st.text(max_size=200).map(lambda text: text.encode(errors='surrogatepass'))}
-    changes = st.lists(seeds, min_size=1, max_size=4)
-    robots = [st.builds(_changed, st.just(text), changes) for text in bases()]
-    return st.integers(-3, 2 * len(robots) - 1).flatmap(
-        lambda way: ways[way] if way in ways else robots[way // 2])
+    ways = {
+        -1: seeds(1).map(lambda drawn: [grown_text(random.Random(seed)).encode()
+                                        for seed, in siblings(drawn)]),
+        -2: st.binary(max_size=200).map(lambda data: [data]),
+        -3: st.text(max_size=200).map(lambda text: [text.encode(errors='surrogatepass')])}
+    robots = [st.builds(lambda text, drawn: [_changed(text, each) for each in siblings(drawn)],
+                        st.just(text), seeds(4)) for text in bases()]
+    return st.integers(-3, len(robots) - 1).flatmap(
+        lambda way: robots[way] if way >= 0 else ways[way])
 
 
 def _changed(text, each):

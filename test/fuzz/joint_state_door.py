@@ -34,7 +34,7 @@ _LONGEST_MESSAGE = 1_000
 
 
 def inputs():
-    """Return the strategy of inputs."""
+    """Return the strategy of lists of inputs."""
     return streams()
 
 
@@ -152,11 +152,12 @@ def _is_too_large(message):
 
 
 def _state(buffer):
-    # As bytes for the same reason. The time is after all that come.
-    end = (CLOCK + 100 * PERIOD) * 1e-9
+    # As bytes for the same reason. The time is after all that come: a joint measured by any of
+    # them is older by another number of periods.
+    end = (CLOCK + 8 * PERIOD) * 1e-9
     return (buffer.position.tobytes(), buffer.velocity.tobytes(), buffer.age(end),
-            buffer.accepted, *(buffer.stale_joints(end, age * PERIOD * 1e-9 - 1e-3)
-                               for age in range(90, 101)))
+            buffer.accepted, *(buffer.stale_joints(end, (age - 0.5) * PERIOD * 1e-9)
+                               for age in range(1, 9)))
 
 
 def _judge(buffer):

@@ -13,9 +13,9 @@ from fuzz.campaign import Campaign
 def door(check):
     """Return a door for numbers."""
     return SimpleNamespace(
-        NAME='a door', SUFFIX='.txt', check=check, warm_up=lambda: None,
-        inputs=lambda: st.integers(0, 10**9), to_bytes=lambda data: str(data).encode(),
-        from_bytes=int)
+        NAME='a door', SUFFIX='.txt', check=check, warm_up=lambda: None, from_bytes=int,
+        inputs=lambda: st.integers(0, 10**9).map(lambda number: [number]),
+        to_bytes=lambda data: str(data).encode())
 
 
 def run(check, folder, inputs=200, seed=7):
