@@ -3,9 +3,14 @@
 from array import array
 from itertools import count
 import math
-from types import SimpleNamespace
 
-from dynamics_node.output import JointStateBuffer, RejectedStateError, take_state
+from dynamics_node.output import (
+    JointStateBuffer,
+    OutputChannel,
+    RejectedStateError,
+    take_state,
+)
+from dynamics_node.output.channel import OutputSettings
 from dynamics_node.output.joint_state_buffer import MAX_NAMES
 from dynamics_node.output.motion_limits import MotionLimits
 from dynamics_node.ros.joint_state_reader import JointStateReader
@@ -97,20 +102,19 @@ def _judge_refusal(error, before, after):
 def _receive(reader, buffer, data, clock):
     message = _read(reader, data)
     stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
-    faults = []
-    # What take_state asks of an OutputChannel.
-    channel = SimpleNamespace(
-        fault=lambda now, reason: faults.append(reason),
-        restart=lambda now, reason: faults.append(reason),
-        settings=SimpleNamespace(state_timeout=_TIMEOUT))
+    now = clock * 1e-9
+    # Driven, so that what must stop an arm is heard of.
+    channel = OutputChannel(OutputSettings(_TIMEOUT, 0.0, 0.0, 'ramp_to_zero'))
+    channel.enable(now)
     try:
-        is_usable = take_state(buffer, channel, clock * 1e-9, message.name, message.position,
+        is_usable = take_state(buffer, channel, now, message.name, message.position,
                                message.velocity, stamp, clock)
     finally:
-        for text in faults:
-            _judge_text(text)
+        _judge_text(channel.machine.reason)
     _judge_text(buffer.outside() or '-')
-    return 'taken: fault' if faults else 'taken: usable' if is_usable else 'taken: not complete'
+    if channel.machine.fault:
+        return 'taken: fault'
+    return 'taken: usable' if is_usable else 'taken: not complete'
 
 
 def _read(reader, data):

@@ -311,14 +311,19 @@ def simulated(shared):
     check_commands(shared)
 
 
+def floating(rig):
+    """Have the arm float on simulated time; return since when."""
+    rig.client.set_clock_offset(-1000.0)
+    rig.float()
+    return rig.client.now
+
+
 def test_simulated_time_may_jump(simulated):
     rig, client = simulated, simulated.client
     rig.during(0.3)
     refused = client.enable(True)
     assert not refused.success and 'no joint state' in refused.message
-    client.set_clock_offset(-1000.0)
-    rig.float()
-    begin = client.now
+    begin = floating(rig)
     # Back: measured states are dropped, and the effort goes on from where it is.
     client.set_clock_offset(-1100.0)
     rig.until(lambda: client.output == 'STARTING')
@@ -334,9 +339,7 @@ def test_simulated_time_may_jump(simulated):
 def test_a_million_names_are_not_even_read(simulated):
     # A reliable connection delivers the sixteen megabytes that a best-effort one loses.
     rig, client = simulated, simulated.client
-    client.set_clock_offset(-1000.0)
-    rig.float()
-    begin = client.now
+    begin = floating(rig)
     client.set_fault('million_names/200')
     rig.until(lambda: client.number('joint states', 'rejected: too many names') > 0)
     client.set_fault('none')
@@ -346,9 +349,7 @@ def test_a_million_names_are_not_even_read(simulated):
 def test_the_death_of_the_node_leaves_the_last_effort(simulated):
     # What the safety section of the README warns of. The last test: DDS takes a while to forget.
     rig, client = simulated, simulated.client
-    client.set_clock_offset(-1000.0)
-    rig.float()
-    begin = client.now
+    begin = floating(rig)
     rig.processes.end('node', signal.SIGKILL)
     rig.during(0.1)
     after = client.now
