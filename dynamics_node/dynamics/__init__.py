@@ -5,8 +5,10 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 
 """
 
+from .friction import Friction
 from .joint_selection import JointSelection
+from .payload import Payload
 from .robot_model import RobotModel
 from .terms import DynamicsTerms
 
-__all__ = ['DynamicsTerms', 'JointSelection', 'RobotModel']
+__all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'Payload', 'RobotModel']
