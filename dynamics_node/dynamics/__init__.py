@@ -6,7 +6,11 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 """
 
 from .joint_selection import JointSelection
+from .max_payload import MaxPayload
+from .over_limit import over_limit, OverLimit
 from .robot_model import RobotModel
 from .terms import DynamicsTerms
+from .trajectory import complete_trajectory, Trajectory
 
-__all__ = ['DynamicsTerms', 'JointSelection', 'RobotModel']
+__all__ = ['DynamicsTerms', 'JointSelection', 'MaxPayload', 'OverLimit', 'RobotModel',
+           'Trajectory', 'complete_trajectory', 'over_limit']
