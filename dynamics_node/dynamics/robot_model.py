@@ -485,6 +485,9 @@ class RobotModel:
 
         """
         motion = complete_trajectory(time, positions, velocities, accelerations)
+        if motion.positions.shape[1] != self._n:
+            raise ArgumentError(f'positions: expected shape (N, {self._n}) for joints '
+                                f'{list(self.joint_names)}, got {motion.positions.shape}')
         return self.inverse_dynamics(motion.positions, motion.velocities, motion.accelerations)
 
     def max_payload(self, q, link, point=(0.0, 0.0, 0.0), *, qd=None, qdd=None,
