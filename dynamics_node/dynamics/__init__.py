@@ -5,12 +5,14 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 
 """
 
+from .friction import Friction
 from .joint_selection import JointSelection
 from .max_payload import MaxPayload
 from .over_limit import over_limit, OverLimit
+from .payload import Payload
 from .robot_model import RobotModel
 from .terms import DynamicsTerms
 from .trajectory import complete_trajectory, Trajectory
 
-__all__ = ['DynamicsTerms', 'JointSelection', 'MaxPayload', 'OverLimit', 'RobotModel',
-           'Trajectory', 'complete_trajectory', 'over_limit']
+__all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload', 'OverLimit', 'Payload',
+           'RobotModel', 'Trajectory', 'complete_trajectory', 'over_limit']

@@ -1,12 +1,12 @@
 """The largest payload that the effort limits allow, and the joint that allows no more."""
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from .over_limit import checked_limits
-from ..errors import ArgumentError, quoted
+from .payload import check_link
+from ..errors import ArgumentError
 from ..kernels import closed_form
 from ..kernels.packing import pack
 from ..model.tree import PRISMATIC
@@ -68,7 +68,7 @@ def max_payload(model, q, link, point, qd, qdd, effort_limits):
     Parameters
     ----------
     model : RobotModel
-        What it carries already counts as part of the robot.
+        Without payload.
     q, qd, qdd : numpy.ndarray, shape (..., n)
         Joint positions (rad or m), velocities, accelerations; batch axes broadcast.
     link : str
@@ -117,12 +117,11 @@ def max_payload(model, q, link, point, qd, qdd, effort_limits):
 
 def _in_body(tree, link, point):
     # The row of the body that carries the link (-1: the base), and the point in its frame.
-    if link not in tree.links:
-        raise ArgumentError(f'link {quoted(link)}: expected one of {", ".join(tree.links)}')
+    check_link(tree.links, link)
     point = np.asarray(point, dtype=float)
     if point.shape != (3,) or not np.isfinite(point).all():
-        raise ArgumentError('point: expected three finite numbers in the frame of link '
-                            f'{quoted(link)}, m, got {quoted(point.tolist())}')
+        raise ArgumentError('point: expected three finite numbers in the frame of the link, m, '
+                            f'got {point.tolist()}')
     frame = tree.links[link]
     return frame.body, frame.placement @ np.append(point, 1.0)
 
@@ -136,8 +135,8 @@ def _per_kilogram(model, body, position, states):
     inertia[body] = np.outer(position, position)  # (2) of a point mass of 1 kg
     q, qd, qdd = (_beside_carriage(value.reshape(-1, shape[-1])) for value in states)
     effort = np.empty_like(q)
-    closed_form.inverse_dynamics(*_on_carriage(*pack(replace(tree, inertia=inertia),
-                                                     model.gravity)), q, qd, qdd, effort)
+    closed_form.inverse_dynamics(*_on_carriage(*pack(tree, model.gravity, inertia)), q, qd, qdd,
+                                 effort)
     # What pushes the carriage is the force that the kilogram needs, N.
     force = np.linalg.norm(effort[:, -3:], axis=1)
     effort = effort[:, :-3]
