@@ -6,6 +6,7 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 """
 
 from .friction import Friction
+from .held_joints import forward_dynamics_held
 from .joint_selection import JointSelection
 from .max_payload import MaxPayload
 from .over_limit import over_limit, OverLimit
@@ -15,4 +16,4 @@ from .terms import DynamicsTerms
 from .trajectory import complete_trajectory, Trajectory
 
 __all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload', 'OverLimit', 'Payload',
-           'RobotModel', 'Trajectory', 'complete_trajectory', 'over_limit']
+           'RobotModel', 'Trajectory', 'complete_trajectory', 'forward_dynamics_held', 'over_limit']

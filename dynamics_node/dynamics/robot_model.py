@@ -160,6 +160,11 @@ class RobotModel:
         return tuple(self._tree.links)
 
     @property
+    def tip_link(self):
+        """Name of the last link of the longest chain of joints."""
+        return self._tree.tip_link
+
+    @property
     def warnings(self):
         """What was accepted in the description but looks wrong, one sentence each."""
         return self._tree.warnings
