@@ -16,4 +16,5 @@ from .terms import DynamicsTerms
 from .trajectory import complete_trajectory, Trajectory
 
 __all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload', 'OverLimit', 'Payload',
-           'RobotModel', 'Trajectory', 'complete_trajectory', 'forward_dynamics_held', 'over_limit']
+           'RobotModel', 'Trajectory', 'complete_trajectory', 'forward_dynamics_held',
+           'over_limit']
