@@ -324,3 +324,9 @@ def test_wrong_input_is_answered_with_what_was_expected_and_what_came(pendulum, 
                                                                       text):
     with pytest.raises(ArgumentError, match=text):
         pendulum.max_payload(*arguments, **options)
+
+
+@pytest.mark.parametrize('gravity', [0.0, 1e-310])
+def test_where_nothing_has_weight_any_mass_will_do(pendulum, gravity):
+    result = pendulum.with_gravity((0.0, 0.0, -gravity)).max_payload([0.3], 'rod')
+    assert (result.mass, result.joint) == (INF, -1)
