@@ -2,6 +2,7 @@
 
 import re
 
+from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.srv import GetGravityTorque, SetGravity, SetPayload
 from dynamics_node import RobotModel
 from geometry_msgs.msg import Inertia, Vector3, Vector3Stamped
@@ -61,7 +62,7 @@ def as_it_was(shared):
 
 
 def test_a_payload_weighs_moves_and_is_gone_without_a_trace(shared):
-    before = gravity_torque(shared)
+    before, health = gravity_torque(shared), shared.listen(DiagnosticArray, '/diagnostics')
     for link in ('tool_center', 'forearm'):
         answer = set_payload(shared, link, BOX)
         assert answer.success, answer.message
@@ -71,6 +72,10 @@ def test_a_payload_weighs_moves_and_is_gone_without_a_trace(shared):
         expected = PinocchioOracle(text).dynamics(ARM.joint_names, Q, 0 * Q)[2]
         np.testing.assert_allclose(gravity_torque(shared), expected, rtol=0,
                                    atol=1e-11 * np.abs(expected).max())
+        shared.until(lambda: any(
+            status.values and {value.key: value.value for value in status.values}.get(
+                'payload') == f'1.5 kg on {link}'  # noqa: B023
+            for message in health for status in message.status))
         # Readable by everybody.
         assert parameter(shared, 'payload.link') == link
         assert parameter(shared, 'payload.mass') == 1.5
