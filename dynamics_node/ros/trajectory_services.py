@@ -72,7 +72,8 @@ class TrajectoryServices(Answering):
             limits = self._limits(robot)
             most = robot.model.max_payload(q, link, point, qd=qd, qdd=qdd, effort_limits=limits)
             mass, joint, (place,) = most.least()
-            finite(np.nan_to_num(mass, posinf=0.0))
+            if mass != np.inf:  # which says that no limit is in the way
+                finite(mass)
             carried = robot.model.with_payload(link, mass if np.isfinite(mass) else 0.0, point)
             effort = carried.inverse_dynamics(q[place], qd[place], qdd[place])
             response.joint_names, response.link = list(names), link

@@ -135,6 +135,9 @@ def test_what_is_no_trajectory_is_refused_in_words(shared):
     q, qd, qdd = motion(time)
     nan = q.copy()
     nan[1, 2] = np.nan
+    no_rates = message(time, q, qd, qdd)
+    no_rates.points[0].velocities = []
+    no_rates.points[1].velocities = [np.nan] * N
     backwards = message(time, q)
     short = message(time, q, qd)
     short.points[1].velocities = [1.0]
@@ -144,7 +147,10 @@ def test_what_is_no_trajectory_is_refused_in_words(shared):
              (backwards, 'time: point 2: expected more than 1.0 s'),
              (short, r'trajectory.points[1].velocities: expected 8 numbers for'),
              (without, r'trajectory.points[2].positions: expected 8 numbers'),
-             (message(time, nan, qd, qdd), 'positions: expected 8 numbers'),
+             (message(time, nan, qd, qdd), 'trajectory.points[1].positions: expected finite'),
+             (no_rates, 'trajectory.points[1].velocities: expected finite numbers, or none; got'),
+             (message(time, q, qd, nan), 'trajectory.points[1].accelerations: expected finite'),
+             (message(time, q[:, :1], names=['\x1b[2J']), r"'\x1b[2J' is not a joint"),
              (message(time, q[:, :1], names=['nose']), "'nose' is not a joint"),
              (message(time, q, 1e300 + qd, qdd), 'the result is not finite')]
     for trajectory, reason in cases:
@@ -208,3 +214,8 @@ def test_the_limits_are_those_of_the_parameter_and_nothing_may_be_in_the_way(cli
     assert not answer.success
     assert np.isnan(answer.mass)
     assert len(answer.effort) == len(answer.joint_names) == 0
+    # So far away that one kilogram there is more than numbers can hold.
+    answer = largest(client, position=q.tolist(), link='hand', point=Point(x=1e160))
+    assert not answer.success
+    assert 'the result is not finite' in answer.message
+    assert np.isnan(answer.mass)
