@@ -155,7 +155,12 @@ class DynamicsNode(Node):
             raise ParameterError('gravity: expected a vector that points to the earth, got one '
                                  'that is turned by more than 90 degrees against the one in '
                                  'force: while output is on, this would throw the arm')
-        over = robot.over_limits(values, model) if model is not robot.model else ''
+        if any(before['gravity']) and not any(values['gravity']):
+            raise ParameterError('gravity: expected a vector that points to the earth, got zero: '
+                                 'while output is on, the arm would fall')
+        changes_effort = (model is not robot.model
+                          or values['effort_scale'] != before['effort_scale'])
+        over = robot.over_limits(values, model) if changes_effort else ''
         if over and not robot.over_limits(before):
             raise ParameterError('while output is on, expected what the arm can hold, but its '
                                  f'gravity torque would be above the limit: {over}')

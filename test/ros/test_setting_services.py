@@ -156,6 +156,27 @@ def test_gravity_along_any_vector_in_the_frame_of_any_link(shared):
                                rtol=0, atol=1e-12)
 
 
+def test_only_the_joints_that_turn_a_frame_must_be_measured(client, start):
+    start(robot_description_file=ARM7, joints='[shoulder_yaw, shoulder_pitch]', state_timeout=1.0)
+
+    def publish():
+        client.publish(['shoulder_yaw', 'shoulder_pitch'], [0.3, 0.5])
+
+    client.until_heard(publish)
+    # Nobody has said how the elbow is turned, and the hand with it.
+    answer = set_gravity(client, (0.0, 0.0, -9.81), 'hand', publish)
+    assert not answer.success
+    assert 'no joint state within 1 s for upper_arm_roll, elbow_pitch, ' in answer.message
+    assert answer.gravity.vector.z == -9.81
+    q = ARM.neutral_position
+    q[:2] = 0.3, 0.5
+    answer = set_gravity(client, (0.0, 3.0, -9.0), 'upper_arm', publish)
+    assert answer.success, answer.message
+    expected = ARM.link_pose(q, 'upper_arm')[:3, :3] @ (0.0, 3.0, -9.0)
+    vector = answer.gravity.vector
+    assert [vector.x, vector.y, vector.z] == pytest.approx(expected, abs=1e-14)
+
+
 def test_a_payload_follows_gravity_whatever_the_mounting(shared):
     assert set_payload(shared, 'hand', BOX).success
     for gravity in ((9.81, 0.0, 0.0), (0.0, 0.0, 9.81), (3.0, -5.0, 7.5)):
