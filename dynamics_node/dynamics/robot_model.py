@@ -76,7 +76,7 @@ class RobotModel:
         self._specialisation = specialisation or Specialisation(*pack(tree, self._gravity))
         if self._inertia is not tree.inertia or self._rotor_inertia.any():
             packed = pack(tree, self._gravity, self._inertia, self._rotor_inertia)
-            specialisation = Specialisation(*packed)
+            specialisation = self._specialisation.for_any_inertia
         else:
             packed = pack(tree, self._gravity)
             specialisation = self._specialisation
@@ -353,7 +353,7 @@ class RobotModel:
                 setattr(self, name, make_callable(
                     code.loaded, name, shapes(self._n), fallback,
                     getattr(RobotModel, name).__doc__,
-                    DynamicsTerms, self._gravity))
+                    DynamicsTerms, self._evaluation.packed[1]))
 
     def mass_matrix(self, q, *, out=None, threads=None):
         """

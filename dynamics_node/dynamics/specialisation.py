@@ -20,17 +20,22 @@ class Specialisation:
     """
     Machine code for one robot, or the way to it.
 
-    It does not depend on gravity, so models of the robot under several gravities share it. It is
-    a matter of speed only: whatever fails here is logged, and the general kernel goes on.
+    It does not depend on gravity, so models of the robot under several gravities share it. A
+    robot has two: the faster one knows the inertia of its bodies; the one `for_any_inertia` is
+    shared by all models with a payload or rotors, so a new payload needs no compiler. It is a
+    matter of speed only: whatever fails here is logged, and the general kernel goes on.
 
     Attributes
     ----------
     code : RobotCode or None
         None while there is none.
+    for_any_inertia : Specialisation or None
+        The robot's code that takes the inertia of bodies and rotors as it comes; None if this
+        is it.
 
     """
 
-    def __init__(self, structure, numbers):
+    def __init__(self, structure, numbers, any_inertia=False):
         """
         Take the code from disk if it was made before.
 
@@ -38,10 +43,12 @@ class Specialisation:
         ----------
         structure, numbers : numpy.ndarray
             See `kernels.packing.pack`.
+        any_inertia : bool
+            See `kernels.specialised.quantities`.
 
         """
         self.code = None
-        self._packed = structure, numbers
+        self._packed = structure, numbers, any_inertia
         self._models: weakref.WeakSet = weakref.WeakSet()
         self._lock = threading.Lock()
         self._calls = 0
@@ -50,9 +57,12 @@ class Specialisation:
                         and specialised.is_supported())
         if self._wanted:
             self._take()
+        # Fetched at once too, if it is on disk: a first payload may come in a control loop.
+        self.for_any_inertia = (
+            None if any_inertia else type(self)(structure, numbers, any_inertia=True))
 
     def __reduce__(self):
-        return type(self), self._packed
+        return type(self), self._packed, {'for_any_inertia': self.for_any_inertia}
 
     def attach(self, model):
         """

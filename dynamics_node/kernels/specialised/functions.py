@@ -1,10 +1,10 @@
 """
 LLVM functions that compute a quantity: of one state, and of many.
 
-    i1 NAME(q, ..., gravity, out...)                one state; false: the results mean nothing
-    void NAME_batch(q, ..., gravity, out..., B)     B >= lanes states, row after row
+    i1 NAME(q, ..., numbers, out...)                one state; false: the results mean nothing
+    void NAME_batch(q, ..., numbers, out..., B)     B >= lanes states, row after row
 
-All arguments but B are addresses of doubles.
+All arguments but B are addresses of doubles; `numbers` are the robot's, see `packing.pack`.
 
 """
 
@@ -61,8 +61,6 @@ def batch_function(quantity, lanes):
     """
     code = Code(lanes)
     n = quantity.joint_count
-    gravity = [_splat(code, code.line(f'load double, ptr {code.address("%gravity", i)}'))
-               for i in range(3)]
     code.do('%last = sub i64 %count, ' + str(lanes))
     code.do('br label %loop')
     code.lines.append('loop:')
@@ -72,8 +70,10 @@ def batch_function(quantity, lanes):
     rows = {name: _row(code, f'%{name}', n) for name in quantity.inputs}
 
     def load(name, index):
-        if name == 'gravity':
-            return gravity[index]
+        if name == 'numbers':
+            # The same for all states. Read where it is needed: repeated once, before the loop,
+            # they would be too many to keep, and take the compiler ten times as long.
+            return _splat(code, code.line(f'load double, ptr {code.address("%numbers", index)}'))
         return _gather(code, rows[name], n, index)
 
     name = append_program(code, quantity, load)
@@ -90,7 +90,7 @@ def batch_function(quantity, lanes):
 
 
 def _pointers(quantity):
-    names = [*quantity.inputs, 'gravity', *(f'out{i}' for i in range(len(quantity.outputs)))]
+    names = [*quantity.inputs, 'numbers', *(f'out{i}' for i in range(len(quantity.outputs)))]
     return [f'ptr %{name}' for name in names]
 
 
