@@ -6,9 +6,14 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 """
 
 from .friction import Friction
+from .held_joints import forward_dynamics_held
 from .joint_selection import JointSelection
+from .max_payload import MaxPayload
+from .over_limit import over_limit
 from .payload import Payload
 from .robot_model import RobotModel
 from .terms import DynamicsTerms
+from .trajectory import complete_trajectory
 
-__all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'Payload', 'RobotModel']
+__all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload', 'Payload', 'RobotModel',
+           'complete_trajectory', 'forward_dynamics_held', 'over_limit']
