@@ -78,6 +78,9 @@ class Specialisation:
             self._models.add(model)
         if self.code is not None:
             self._hand_out([model])
+        elif self._process is not None:
+            # Begun before this model came: it may be ready.
+            self.begin()
 
     def count(self, states):
         """Notice that the general kernel was asked for so many states; begin if it is often."""

@@ -1,19 +1,25 @@
 """Machine code takes over without anybody waiting, and can be done without."""
 
+from concurrent.futures import ThreadPoolExecutor
 import copy
+import gc
 import inspect
 import os
 import pickle
+import resource
 import subprocess
 import sys
 import time
+import weakref
 
-from dynamics_node import RobotModel
+from dynamics_node import RobotModel, SingularMassMatrixError
+from dynamics_node.dynamics.evaluation import Evaluation
 from dynamics_node.dynamics.specialisation import Specialisation
 from dynamics_node.kernels import specialised
 from dynamics_node.kernels.specialised import background, robot_code
 import numpy as np
 import pytest
+from support.carried import random_body
 from support.machine_code import needs_machine_code
 from support.robots import PENDULUM, random_urdf
 
@@ -199,3 +205,252 @@ def test_python_may_end_while_it_is_made(folder):
     while not list(folder.iterdir()) and time.monotonic() < end:
         time.sleep(0.05)
     assert list(folder.iterdir())
+
+
+def begun():
+    """Return how many processes have been started to compile."""
+    return len(background._processes)
+
+
+def used_until_specialised(model):
+    q = np.zeros(len(model.joint_names))
+    end = time.monotonic() + 60
+    while not model.is_specialised and time.monotonic() < end:
+        model.gravity_torque(q)
+    assert model.is_specialised
+
+
+def with_random_payload(model, rng):
+    links = model.link_names
+    return model.with_payload(links[int(rng.integers(len(links)))], *random_body(rng))
+
+
+def assert_as_the_general_kernel(model, rng):
+    """Compare one state and a batch, all quantities; the general kernel knows no machine code."""
+    general = Evaluation(model._evaluation.packed, model.joint_names, Specialisation(
+        np.empty((0, 3), dtype=np.int64), np.zeros((1, 28))))
+    n = len(model.joint_names)
+    for shape in ((n,), (9, n)):
+        q, qd, qdd = rng.uniform(-2.0, 2.0, (3, *shape))
+        for name, arguments in {
+                'dynamics': (q, qd), 'mass_matrix': (q,), 'gravity_torque': (q,),
+                'coriolis_matrix': (q, qd), 'inverse_dynamics': (q, qd, qdd)}.items():
+            mine, theirs = getattr(model, name)(*arguments), getattr(general, name)(*arguments)
+            if not isinstance(mine, tuple):
+                mine, theirs = (mine,), (theirs,)
+            for one, other in zip(mine, theirs, strict=True):
+                np.testing.assert_allclose(one, other, rtol=0,
+                                           atol=1e-13 * max(np.abs(other).max(), 1e-3))
+
+
+def test_a_second_payload_starts_no_compiler():
+    model = RobotModel.from_urdf(random_urdf(5, joints=3))
+    rng = np.random.default_rng(5)
+    assert model.specialise()
+    assert begun() == 0
+    used_until_specialised(with_random_payload(model, rng))
+    assert begun() == 1
+    for _ in range(20):
+        other = with_random_payload(model, rng).with_rotor_inertia(rng.uniform(0.0, 1.0))
+        assert other.is_specialised
+        assert_as_the_general_kernel(other, rng)
+        used_until_specialised(other)
+    assert begun() == 1
+    # Nor does a robot that differs in nothing but its inertia.
+    heavier = RobotModel.from_urdf(
+        random_urdf(5, joints=3).replace('mass value="', 'mass value="1'))
+    assert not heavier.is_specialised
+    assert with_random_payload(heavier, rng).is_specialised
+    assert begun() == 1
+
+
+def test_models_that_carried_something_before_it_was_ready_get_it_too():
+    model = RobotModel.from_urdf(PENDULUM)
+    light, heavy = model.with_payload('rod', 1.0), model.with_payload('rod', 50.0)
+    geared = model.with_rotor_inertia(0.3)
+    assert light.specialise()
+    assert heavy.is_specialised
+    assert geared.is_specialised
+    assert not model.is_specialised
+    assert len({float(robot.mass_matrix(np.zeros(1))[0, 0])
+                for robot in (model, light, heavy, geared)}) == 4
+
+
+def test_that_for_payloads_can_be_asked_for_before_one_comes():
+    model = RobotModel.from_urdf(PENDULUM)
+    q = np.zeros(1)
+    model.specialise(wait=False, loads=True)
+    assert begun() == 2
+    for process in background._processes.values():
+        assert process.wait(60.0) == 0
+    # The first model that carries something finds it, and so do all that come later.
+    loaded = model.with_payload('rod', 1.0)
+    end = time.monotonic() + 10
+    while not loaded.is_specialised and time.monotonic() < end:
+        time.sleep(0.001)
+    assert loaded.is_specialised
+    assert model.with_payload('rod', 2.0).is_specialised
+    used_until_specialised(model)
+    assert begun() == 2
+    again = RobotModel.from_urdf(PENDULUM)
+    assert again.specialise(loads=True)
+    np.testing.assert_array_equal(again.with_payload('rod', 1.0).mass_matrix(q),
+                                  loaded.mass_matrix(q))
+
+
+def test_both_can_be_waited_for():
+    model = RobotModel.from_urdf(PENDULUM)
+    assert model.with_payload('rod', 1.0).specialise(loads=True)
+    assert not model.is_specialised
+    assert model.specialise(loads=True)
+    assert model.with_rotor_inertia(1.0).is_specialised
+    assert begun() == 0
+
+
+@pytest.mark.parametrize('seed', range(6))
+def test_a_payload_and_rotors_on_a_random_tree(seed):
+    rng = np.random.default_rng(seed)
+    model = RobotModel.from_urdf(random_urdf(seed, joints=2 + seed % 4))
+    loaded = with_random_payload(model, rng).with_rotor_inertia(
+        rng.uniform(0.0, 1.0, len(model.joint_names))).with_gravity(rng.normal(0.0, 6.0, 3))
+    assert loaded.specialise()
+    for robot in (loaded, with_random_payload(loaded, rng), loaded.with_rotor_inertia(0.0)):
+        assert robot.is_specialised == (robot._evaluation.specialisation.code is not None)
+        assert_as_the_general_kernel(robot, rng)
+
+
+def test_a_payload_that_is_removed_gives_the_robot_back_to_the_last_bit():
+    model = RobotModel.from_urdf(random_urdf(8, joints=4))
+    rng = np.random.default_rng(8)
+    assert model.specialise()
+    states = rng.uniform(-2.0, 2.0, (2, 9, len(model.joint_names)))
+    before, batch = model.dynamics(*states[:, 0]), model.dynamics(*states)
+    loaded = with_random_payload(model, rng)
+    assert loaded.specialise()
+    loaded.dynamics(*states)
+    removed = loaded.with_payload(model.link_names[-1], 0.0)
+    assert removed._evaluation.specialisation is model._evaluation.specialisation
+    for old, new in zip((*before, *batch),
+                        (*removed.dynamics(*states[:, 0]), *removed.dynamics(*states)),
+                        strict=True):
+        assert old.tobytes() == new.tobytes()
+
+
+def test_a_link_without_mass_may_become_loaded():
+    # The tip weighs nothing, so D is singular, whatever the state: until it carries something.
+    text = random_urdf(12, joints=2, with_mimic=False).replace('</robot>', """
+        <link name="tip"/><joint name="last" type="continuous"><parent link="link1"/>
+        <child link="tip"/><axis xyz="0 0 1"/></joint></robot>""")
+    model = RobotModel.from_urdf(text)
+    assert model.specialise()
+    rng = np.random.default_rng(12)
+    q, qd, tau = rng.uniform(-1.0, 1.0, (3, 3))
+    loaded = model.with_payload('tip', *random_body(rng))
+    assert loaded.specialise()
+    assert_as_the_general_kernel(loaded, rng)
+    qdd = loaded.forward_dynamics(q, qd, tau)
+    np.testing.assert_allclose(loaded.inverse_dynamics(q, qd, qdd), tau, rtol=0, atol=1e-10)
+    # The same machine code sees that nothing is there, where only another link is loaded.
+    elsewhere = loaded.with_payload('link0', *random_body(rng))
+    assert elsewhere.is_specialised
+    for singular in (model, elsewhere):
+        with pytest.raises(SingularMassMatrixError):
+            singular.forward_dynamics(q, qd, tau)
+
+
+def test_a_payload_far_heavier_than_the_robot_does_not_spoil_it_for_others(monkeypatch):
+    # What is loaded is compared at loads that fit the robot, not at whatever comes first.
+    model = RobotModel.from_urdf(random_urdf(4, joints=4, with_mimic=False))
+    assert model.with_payload(model.link_names[-1], 1.0).specialise()
+    monkeypatch.setattr(robot_code, '_loaded', {})
+    again = RobotModel.from_urdf(random_urdf(4, joints=4, with_mimic=False))
+    assert again.with_payload(model.link_names[-1], 1e15).is_specialised
+    assert_as_the_general_kernel(again.with_payload(model.link_names[-1], 2.0),
+                                 np.random.default_rng(4))
+
+
+def test_a_thousand_payloads_leave_nothing_behind():
+    model = RobotModel.from_urdf(random_urdf(9, joints=3))
+    rng = np.random.default_rng(9)
+    bodies = [random_body(rng) for _ in range(10)]
+    q = rng.uniform(-1.0, 1.0, len(model.joint_names))
+    assert model.with_payload('link0', *bodies[0]).specialise()
+    processes, codes = begun(), len(robot_code._loaded)
+
+    def load(times):
+        for i in range(times):
+            loaded = model.with_payload('link0', *bodies[i % 10])
+            loaded.gravity_torque(q)
+        return weakref.ref(loaded)
+
+    load(100)
+    gc.collect()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    gc.disable()
+    try:
+        last = load(1000)
+        # No circle either: it goes when nobody holds it, not when garbage is collected.
+        assert last() is None
+    finally:
+        gc.enable()
+    assert len(model._specialisation.for_any_inertia._models) == 0
+    assert (begun(), len(robot_code._loaded)) == (processes, codes)
+    # A model and its entries take some 10 kB: a thousand would be 10 MB.
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4_000
+
+
+def test_a_loaded_model_is_freed_while_others_compute():
+    model = RobotModel.from_urdf(random_urdf(9, joints=3))
+    rng = np.random.default_rng(9)
+    assert with_random_payload(model, rng).specialise()
+    states = rng.uniform(-1.0, 1.0, (8, len(model.joint_names)))
+    bodies = [random_body(rng) for _ in range(8)]
+
+    def expected(i):
+        other = model.with_payload('link1', *bodies[i])
+        return other._evaluation.mass_matrix(states[i])
+
+    wanted = [expected(i) for i in range(8)]
+
+    def work(i):
+        worst = 0.0
+        for _ in range(200):
+            D = model.with_payload('link1', *bodies[i]).mass_matrix(states[i])
+            worst = max(worst, np.abs(D - wanted[i]).max())
+        return worst
+
+    with ThreadPoolExecutor(8) as pool:
+        assert max(pool.map(work, range(8))) < 1e-12
+
+
+@pytest.mark.parametrize('ready', [False, True])
+def test_a_loaded_model_can_be_pickled(ready):
+    model = RobotModel.from_urdf(random_urdf(6, joints=3))
+    rng = np.random.default_rng(6)
+    loaded = with_random_payload(model, rng).with_rotor_inertia(0.2)
+    assert not ready or loaded.specialise()
+    other = pickle.loads(pickle.dumps(loaded))
+    assert other.is_specialised == ready
+    q = np.full(len(model.joint_names), 0.3)
+    np.testing.assert_array_equal(other.mass_matrix(q), loaded.mass_matrix(q))
+    assert other._specialisation.for_any_inertia is other._evaluation.specialisation
+    assert with_random_payload(other, rng).specialise()
+    assert other.is_specialised
+    assert_as_the_general_kernel(other, rng)
+
+
+@pytest.mark.skipif(not hasattr(os, 'fork'), reason='needs fork')
+@pytest.mark.filterwarnings('ignore:This process.*is multi-threaded:DeprecationWarning')
+def test_a_forked_process_has_the_same_payloads():
+    model = RobotModel.from_urdf(random_urdf(6, joints=3))
+    rng = np.random.default_rng(6)
+    assert with_random_payload(model, rng).specialise()
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            assert_as_the_general_kernel(with_random_payload(model, rng), rng)
+            code = 0
+        finally:
+            os._exit(code)
+    assert os.waitpid(child, 0)[1] == 0
