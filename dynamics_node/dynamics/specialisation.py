@@ -50,9 +50,11 @@ class Specialisation:
         self.code = None
         self._packed = structure, numbers, any_inertia
         self._models: weakref.WeakSet = weakref.WeakSet()
-        self._lock = threading.Lock()
+        # A new model must not wait while another thread loads.
+        self._lock, self._loading = threading.Lock(), threading.Lock()
         self._calls = 0
         self._process = None
+        self._loader: threading.Thread | None = None
         self._wanted = (len(structure) > 0 and specialised.is_wanted()
                         and specialised.is_supported())
         if self._wanted:
@@ -99,9 +101,10 @@ class Specialisation:
                 self._process = specialised.start(*self._packed)
             elif self._process.poll() is not None:
                 self._wanted = self._process.returncode == 0
-                if self._wanted:
+                if self._wanted and self._loader is None:
                     # Loading takes some milliseconds: not in somebody's control loop.
-                    threading.Thread(target=self._take, name='dynamics_node load').start()
+                    self._loader = threading.Thread(target=self._take, name='dynamics_node load')
+                    self._loader.start()
         except (OSError, RuntimeError) as error:  # no process or thread can be started
             self._give_up(error)
 
@@ -115,17 +118,20 @@ class Specialisation:
 
     def _take(self, make=False):
         # Once: a thread that loads and a caller that waits may both come here.
-        with self._lock:
+        with self._loading:
             if self.code is not None:
                 return
+            code = None
             try:
-                self.code = (specialised.make if make else specialised.from_disk)(*self._packed)
+                code = (specialised.make if make else specialised.from_disk)(*self._packed)
             except Exception as error:
                 self._give_up(error)
             # Asked for, and not there: too large a robot, or a place that cannot be written.
-            self._wanted = self.code is not None or (self._wanted and self._process is None)
-            models = list(self._models)
-        if self.code is not None:
+            self._wanted = code is not None or (self._wanted and self._process is None)
+            with self._lock:
+                self.code = code
+                models = list(self._models)
+        if code is not None:
             self._hand_out(models)
 
     def _hand_out(self, models):

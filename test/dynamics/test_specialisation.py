@@ -10,6 +10,7 @@ import resource
 import shutil
 import subprocess
 import sys
+import threading
 import time
 import weakref
 
@@ -325,6 +326,30 @@ def test_that_for_payloads_can_be_asked_for_before_one_comes():
     assert again.specialise(loads=True)
     np.testing.assert_array_equal(again.with_payload('rod', 1.0).mass_matrix(q),
                                   loaded.mass_matrix(q))
+
+
+def test_a_new_model_does_not_wait_while_machine_code_is_loaded(small, monkeypatch):
+    begun_to_load, may_end = threading.Event(), threading.Event()
+    right = specialised.from_disk
+
+    def slow(*packed):
+        begun_to_load.set()
+        assert may_end.wait(60.0)
+        return right(*packed)
+
+    specialisation = small._specialisation.for_any_inertia
+    specialisation.code = None
+    monkeypatch.setattr(specialised, 'from_disk', slow)
+    thread = threading.Thread(target=specialisation._take)
+    thread.start()
+    try:
+        assert begun_to_load.wait(60.0)
+        loaded = small.with_payload('link0', 1.0)
+        assert not loaded.is_specialised
+    finally:
+        may_end.set()
+        thread.join()
+    assert inspect.isbuiltin(loaded.dynamics)
 
 
 def test_both_can_be_waited_for():
