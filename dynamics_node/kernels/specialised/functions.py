@@ -61,6 +61,10 @@ def batch_function(quantity, lanes):
     """
     code = Code(lanes)
     n = quantity.joint_count
+    # The robot's numbers are the same for all states. Gravity alone is read once, before the loop;
+    # with inertia they are too many to keep, and the compiler takes ten times as long to try.
+    places = _places(quantity)
+    kept = {place: _number(code, place) for place in places} if len(places) <= 3 else {}
     code.do('%last = sub i64 %count, ' + str(lanes))
     code.do('br label %loop')
     code.lines.append('loop:')
@@ -71,9 +75,7 @@ def batch_function(quantity, lanes):
 
     def load(name, index):
         if name == 'numbers':
-            # The same for all states. Read where it is needed: repeated once, before the loop,
-            # they would be too many to keep, and take the compiler ten times as long.
-            return _splat(code, code.line(f'load double, ptr {code.address("%numbers", index)}'))
+            return kept[index] if kept else _number(code, index)
         return _gather(code, rows[name], n, index)
 
     name = append_program(code, quantity, load)
@@ -87,6 +89,18 @@ def batch_function(quantity, lanes):
     code.do('ret void')
     return _function('void', f'{quantity.name}_batch', [*_pointers(quantity), 'i64 %count'],
                      code.lines)
+
+
+def _places(quantity):
+    # Which of the robot's numbers the program reads.
+    operations = quantity.program.operations
+    needed = (operations[index] for index in quantity.program.needed(quantity.results()))
+    return sorted(operation.arguments[1] for operation in needed
+                  if operation.name == 'input' and operation.arguments[0] == 'numbers')
+
+
+def _number(code, place):
+    return _splat(code, code.line(f'load double, ptr {code.address("%numbers", place)}'))
 
 
 def _pointers(quantity):
