@@ -10,6 +10,8 @@ from .guard import guarded_service
 from ..errors import ArgumentError
 
 _TENSOR = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
+# Anywhere on the surface of the earth gravity is between these, m/s².
+_LEAST, _MOST = 9.76, 9.84
 
 
 class SettingServices(Answering):
@@ -61,7 +63,10 @@ class SettingServices(Answering):
             if frame not in ('', robot.model.tree.root):
                 gravity = self._turned(robot, frame, gravity)
             self.parameters.set({'gravity': tuple(gravity.tolist())})
-            return 'gravity points to the earth along this vector'
+            size = float(np.linalg.norm(gravity))
+            return f'gravity is {size:.6g} m/s^2 along this vector' + (
+                '' if _LEAST <= size <= _MOST else ', which is not that of the earth: its length '
+                'counts too')
         return self._with_gravity(self.answer(response, fill))
 
     def failed(self, response, message):
@@ -76,8 +81,12 @@ class SettingServices(Answering):
             robot.model.link_pose(robot.model.neutral_position, frame)
         except ArgumentError as error:
             raise ArgumentError(f'header.frame_id: {error}') from error
-        q = robot.measured_position(time.monotonic(), self.parameters['state_timeout'])
-        return robot.model.link_pose(q, frame)[:3, :3] @ vector
+        timeout = self.parameters['state_timeout']
+        if stale := robot.buffer.stale_joints(time.monotonic(), timeout):
+            raise ArgumentError(f'header.frame_id: how {frame} is turned is not known: no joint '
+                                f'state within {timeout:g} s for {", ".join(stale)}; publish '
+                                'joint_states, or give gravity in the frame of the root link')
+        return robot.model.link_pose(robot.buffer.position, frame)[:3, :3] @ vector
 
     def _with_payload(self, response):
         robot = self._get_robot()

@@ -55,14 +55,23 @@ def test_integers_are_taken_for_doubles():
     assert check_all({'effort_limits': [87, 12]})['effort_limits'] == (87.0, 12.0)
 
 
+def flat(tree, prefix=''):
+    """Yield the dotted names and values of nested parameters."""
+    for name, value in tree.items():
+        if isinstance(value, dict):
+            yield from flat(value, f'{prefix}{name}.')
+        else:
+            yield prefix + name, value
+
+
 def test_the_parameter_file_has_every_parameter_with_its_default():
     text = (ROOT / 'config' / 'dynamics.yaml').read_text()
     [node] = yaml.safe_load(text).values()
     # An empty list cannot be written in a parameter file, so those stand in comments.
-    written = node['ros__parameters']
+    written = dict(flat(node['ros__parameters']))
     for parameter in PARAMETERS:
         if parameter.default == ():
-            assert re.search(rf'^ +# {parameter.name}: \[', text, re.M), parameter.name
+            assert re.search(rf'^ +# {re.escape(parameter.name)}: \[', text, re.M), parameter.name
         else:
             value = written.pop(parameter.name)
             assert parameter.check(value) == parameter.default, parameter.name
@@ -71,11 +80,12 @@ def test_the_parameter_file_has_every_parameter_with_its_default():
 
 def test_the_readme_has_every_parameter_with_its_default():
     text = (ROOT / 'README.md').read_text()
-    rows = dict(re.findall(r'^\| `([a-z_]+)` \| (.*?) \|', text, re.M))
+    rows = dict(re.findall(r'^\| `([a-z_.]+)` \| (.*?) \|', text, re.M))
     for parameter in PARAMETERS:
         default = parameter.default
         if isinstance(default, bool):
             shown = str(default).lower()
         else:
-            shown = list(default) if isinstance(default, tuple) else default or "''"
+            shown = list(default) if isinstance(default, tuple) else default
+            shown = "''" if shown == '' else shown
         assert rows.get(parameter.name) == f'`{shown}`', parameter.name
