@@ -348,14 +348,10 @@ class RobotModel:
             DYNAMICS_NODE_SPECIALISE=0.
 
         """
-        wanted = [self._evaluation.specialisation]
-        if loads and self._specialisation.for_any_inertia not in wanted:
-            wanted.append(self._specialisation.for_any_inertia)
-        for specialisation in wanted:
-            if wait:
-                specialisation.wait()
-            else:
-                specialisation.begin()
+        specialisation = self._evaluation.specialisation
+        if wait:
+            return specialisation.wait(loads)
+        specialisation.begin(loads)
         return self.is_specialised
 
     def _use(self, code):

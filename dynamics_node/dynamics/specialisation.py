@@ -53,15 +53,16 @@ class Specialisation:
         # A new model must not wait while another thread loads.
         self._lock, self._loading = threading.Lock(), threading.Lock()
         self._calls = 0
+        self._loads = False
         self._process = None
         self._loader: threading.Thread | None = None
         self._wanted = (len(structure) > 0 and specialised.is_wanted()
                         and specialised.is_supported())
-        if self._wanted:
-            self._take()
         # Fetched at once too, if it is on disk: a first payload may come in a control loop.
         self.for_any_inertia = (
             None if any_inertia else type(self)(structure, numbers, any_inertia=True))
+        if self._wanted:
+            self._take()
 
     def __reduce__(self):
         return type(self), self._packed, {'for_any_inertia': self.for_any_inertia}
@@ -92,8 +93,19 @@ class Specialisation:
         self._calls -= _ASK_EVERY
         self.begin()
 
-    def begin(self):
-        """Have the code made in the background, or fetch it if that is done."""
+    def begin(self, loads=False):
+        """
+        Have the code made in the background, or fetch it if that is done.
+
+        Parameters
+        ----------
+        loads : bool
+            Then that for any inertia too. One after the other: each takes a core for seconds.
+
+        """
+        self._loads = self._loads or loads
+        if self.code is not None and loads and self.for_any_inertia is not None:
+            self.for_any_inertia.begin()
         if not self._wanted or self.code is not None:
             return
         try:
@@ -108,8 +120,22 @@ class Specialisation:
         except (OSError, RuntimeError) as error:  # no process or thread can be started
             self._give_up(error)
 
-    def wait(self):
-        """Make the code here, or wait for the background; return whether there is one."""
+    def wait(self, loads=False):
+        """
+        Make the code here, or wait for the background; return whether there is one.
+
+        Parameters
+        ----------
+        loads : bool
+            That for any inertia too.
+
+        Returns
+        -------
+        bool
+
+        """
+        if loads and self.for_any_inertia is not None:
+            self.for_any_inertia.wait()
         if self._wanted and self.code is None:
             if self._process is not None:
                 self._process.wait()
@@ -133,6 +159,8 @@ class Specialisation:
                 models = list(self._models)
         if code is not None:
             self._hand_out(models)
+            if self._loads and self.for_any_inertia is not None:
+                self.for_any_inertia.begin()
 
     def _hand_out(self, models):
         for model in models:
