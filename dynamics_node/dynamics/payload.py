@@ -1,6 +1,7 @@
 """A payload: one more rigid body on a link."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -34,7 +35,7 @@ class Payload:
     com: np.ndarray
     inertia: np.ndarray
 
-    @property
+    @cached_property
     def pseudo_inertia(self):
         """J of the payload in the link's frame, shape (4, 4): kg m², kg m, kg."""
         return pseudo_inertia(self.mass, self.com, self.inertia)

@@ -112,8 +112,9 @@ class DynamicsNode(Node):
             kept = 'the one before stays in force' if self._robot else 'still waiting for one'
             self.logger.error(f'robot description from {origin} refused, {kept}: {error}')
             return True
-        # In another process; the general kernel, loaded at the start, answers meanwhile.
-        model.specialise(wait=False)
+        # In another process; the general kernel, loaded at the start, answers meanwhile. For
+        # payloads too: when one comes, the arm may float, and nothing should be started then.
+        model.specialise(wait=False, loads=True)
         is_first = self._robot is None
         self._robot = robot
         self._configure(self.parameters.values)
