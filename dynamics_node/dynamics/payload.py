@@ -5,11 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ..errors import ArgumentError, quoted
+from .arguments import check_link
+from ..errors import ArgumentError
 from ..inertia import check_physical, pseudo_inertia, transform_pseudo_inertia
-
-# Links that an error message lists.
-_MOST_SHOWN = 50
 
 
 @dataclass(frozen=True)
@@ -88,26 +86,6 @@ def make_payload(links, link, mass, com, inertia):
     payload = Payload(link, mass, com, inertia)
     check_physical(payload.pseudo_inertia)
     return payload
-
-
-def check_link(links, link):
-    """
-    Demand that a link is one of the robot's.
-
-    Parameters
-    ----------
-    links : dict of str to LinkFrame
-    link : str
-
-    Raises
-    ------
-    ArgumentError
-        With the links that there are.
-
-    """
-    if link not in links:
-        shown = ', '.join(list(links)[:_MOST_SHOWN]) + (', ...' * (len(links) > _MOST_SHOWN))
-        raise ArgumentError(f'link: expected one of {shown}; got {quoted(link)}')
 
 
 def loaded_inertia(tree, payload):

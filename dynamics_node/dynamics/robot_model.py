@@ -4,10 +4,11 @@ import inspect
 
 import numpy as np
 
+from .arguments import check_link, gravity_vector, per_joint
 from .evaluation import Evaluation, SHAPES
-from .friction import make_friction, per_joint, SMOOTHING_VELOCITY
+from .friction import make_friction, SMOOTHING_VELOCITY
 from .max_payload import max_payload
-from .payload import check_link, loaded_inertia, make_payload
+from .payload import loaded_inertia, make_payload
 from .specialisation import Specialisation
 from .terms import DynamicsTerms
 from .trajectory import complete_trajectory
@@ -68,7 +69,7 @@ class RobotModel:
 
         """
         self._tree = tree
-        self._gravity = _gravity_vector(gravity)
+        self._gravity = gravity_vector(gravity)
         self._n = len(tree.joint_names)
         self._payload = payload
         self._rotor_inertia = per_joint('rotor_inertia', tree.joint_names, rotor_inertia)
@@ -774,11 +775,3 @@ class RobotModel:
         return max_payload(unloaded, q, link, point, rest if qd is None else qd,
                            rest if qdd is None else qdd,
                            self.effort_limits if effort_limits is None else effort_limits)
-
-
-def _gravity_vector(value):
-    vector = np.array(value, dtype=float)
-    if vector.shape != (3,) or not np.all(np.isfinite(vector)):
-        raise ArgumentError(f'gravity: expected three finite numbers, m/s^2, got {value!r}')
-    vector.flags.writeable = False
-    return vector
