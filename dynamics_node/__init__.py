@@ -18,19 +18,19 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from .dynamics import DynamicsTerms, RobotModel
+    from .dynamics import DynamicsTerms, MomentumObserver, RobotModel
 
 __version__ = '0.1.0'
 
 __all__ = [
-    'ArgumentError', 'DynamicsError', 'DynamicsTerms', 'InertiaError', 'RobotDescriptionError',
-    'RobotModel', 'SingularMassMatrixError', '__version__',
+    'ArgumentError', 'DynamicsError', 'DynamicsTerms', 'InertiaError', 'MomentumObserver',
+    'RobotDescriptionError', 'RobotModel', 'SingularMassMatrixError', '__version__',
 ]
 
 
 def __getattr__(name):
     # Loaded on first use: numba takes a second, and not everything in here needs it.
-    if name in ('DynamicsTerms', 'RobotModel'):
+    if name in ('DynamicsTerms', 'MomentumObserver', 'RobotModel'):
         from . import dynamics
         return getattr(dynamics, name)
     raise AttributeError(f'module {__name__!r} has no attribute {name!r}')

@@ -6,7 +6,8 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 """
 
 from .joint_selection import JointSelection
+from .momentum_observer import MomentumObserver
 from .robot_model import RobotModel
 from .terms import DynamicsTerms
 
-__all__ = ['DynamicsTerms', 'JointSelection', 'RobotModel']
+__all__ = ['DynamicsTerms', 'JointSelection', 'MomentumObserver', 'RobotModel']
