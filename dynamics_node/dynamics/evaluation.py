@@ -153,6 +153,30 @@ class Evaluation:
         closed_form.gravity_torque(*self.packed, q, G, V)
         return V.reshape(lead)
 
+    def jacobian(self, q, frame, point):
+        """Return the Jacobian of a point of a link (a `LinkFrame`), the batch axes of q first."""
+        lead, [q] = self.states(q=q)
+        J = np.zeros((len(q), 6, self._n))
+        if np.shape(point) != (3,):
+            raise ArgumentError(f'point: expected three numbers, m, got {point!r}')
+        if frame.body >= 0:
+            inside = frame.placement[:3, :3] @ _plain(point) + frame.placement[:3, 3]
+            closed_form.jacobian(*self.packed, q, frame.body, inside, J)
+        return J.reshape(*lead, 6, self._n)
+
+    def link_pose(self, q, frame):
+        """Return the transform from a link (a `LinkFrame`) to the base, the batch axes first."""
+        lead, [q] = self.states(q=q)
+        pose = np.zeros((len(q), 4, 4))
+        if frame.body >= 0:
+            body = np.empty((len(q), 3, 4))
+            closed_form.body_pose(*self.packed, q, frame.body, body)
+            pose[:, :3], pose[:, 3, 3] = body, 1.0
+            pose = pose @ frame.placement
+        else:
+            pose[:] = frame.placement
+        return pose.reshape(*lead, 4, 4)
+
     def _run(self, name, lead, arrays, out, threads):
         count, shapes = len(arrays[0]), self._shapes[name]
         if out is None:

@@ -5,6 +5,8 @@ import inspect
 import numpy as np
 
 from .evaluation import Evaluation, SHAPES
+from .friction import make_friction, per_joint, SMOOTHING_VELOCITY
+from .payload import check_link, loaded_inertia, make_payload
 from .specialisation import Specialisation
 from .terms import DynamicsTerms
 from ..errors import ArgumentError
@@ -21,9 +23,11 @@ class RobotModel:
     """
     A robot with a fixed base: D(q) q̈ + C(q, q̇) q̇ + G(q) = τ.
 
-    What it describes never changes: another gravity makes another model. Every method takes
-    arrays with leading batch axes and may be called from several threads. NaN in an argument
-    gives NaN in all that depends on it.
+    What it describes never changes: another gravity, payload, rotor inertia or friction makes
+    another model at once (`with_gravity`, `with_payload`...). Friction is no part of the
+    equation above; `friction_torque` says what to add. Every method takes arrays with leading
+    batch axes and may be called from several threads. NaN in an argument gives NaN in all that
+    depends on it.
 
     Large batches are computed by as many threads as the process may use, or by `threads`.
 
@@ -36,7 +40,8 @@ class RobotModel:
 
     """
 
-    def __init__(self, tree, gravity=STANDARD_GRAVITY, *, specialisation=None):
+    def __init__(self, tree, gravity=STANDARD_GRAVITY, *, payload=None, rotor_inertia=0.0,
+                 friction=None, specialisation=None):
         """
         Make the model of a kinematic tree; most users want `from_urdf`.
 
@@ -45,22 +50,38 @@ class RobotModel:
         tree : KinematicTree
         gravity : array_like, shape (3,)
             Gravity acceleration in the base frame, m/s², points down.
+        payload : Payload, optional
+            See `with_payload`.
+        rotor_inertia : array_like, shape (n,), or float
+            See `with_rotor_inertia`.
+        friction : Friction, optional
+            See `with_friction`; by default what the tree says.
         specialisation : Specialisation, optional
-            That of another model of the same tree.
+            That of another model of the same tree, without payload and rotor inertia.
 
         Raises
         ------
         ArgumentError
-            If gravity is not three finite numbers.
+            If gravity is not three finite numbers, or a rotor inertia is negative.
 
         """
         self._tree = tree
         self._gravity = _gravity_vector(gravity)
         self._n = len(tree.joint_names)
-        packed = pack(tree, self._gravity)
-        self._evaluation = Evaluation(packed, tree.joint_names,
-                                      specialisation or Specialisation(*packed))
-        self._evaluation.specialisation.attach(self)
+        self._payload = payload
+        self._rotor_inertia = per_joint('rotor_inertia', tree.joint_names, rotor_inertia)
+        self._friction = friction or make_friction(
+            tree.joint_names, tree.friction[:, 0], tree.friction[:, 1], SMOOTHING_VELOCITY)
+        self._inertia = loaded_inertia(tree, payload)
+        self._specialisation = specialisation or Specialisation(*pack(tree, self._gravity))
+        if self._inertia is not tree.inertia or self._rotor_inertia.any():
+            packed = pack(tree, self._gravity, self._inertia, self._rotor_inertia)
+            specialisation = Specialisation(*packed)
+        else:
+            packed = pack(tree, self._gravity)
+            specialisation = self._specialisation
+        self._evaluation = Evaluation(packed, tree.joint_names, specialisation)
+        specialisation.attach(self)
 
     @classmethod
     def from_urdf(cls, source, gravity=STANDARD_GRAVITY):
@@ -117,14 +138,34 @@ class RobotModel:
         return self._gravity
 
     @property
+    def payload(self):
+        """What a link carries besides, a `Payload`, or None; see `with_payload`."""
+        return self._payload
+
+    @property
+    def rotor_inertia(self):
+        """Inertia of the rotors on the diagonal of D, kg m² or kg, shape (n,), read-only."""
+        return self._rotor_inertia
+
+    @property
+    def friction(self):
+        """Friction of the joints, a `Friction`; see `with_friction`."""
+        return self._friction
+
+    @property
+    def link_names(self):
+        """Names of all links, the root link first."""
+        return tuple(self._tree.links)
+
+    @property
     def warnings(self):
         """What was accepted in the description but looks wrong, one sentence each."""
         return self._tree.warnings
 
     @property
     def total_mass(self):
-        """Mass of everything that joints move, kg."""
-        return float(self._tree.inertia[:, 3, 3].sum())
+        """Mass of everything that joints move, with the payload, kg."""
+        return float(self._inertia[:, 3, 3].sum())
 
     @property
     def position_limits(self):
@@ -172,7 +213,106 @@ class RobotModel:
             If gravity is not three finite numbers.
 
         """
-        return RobotModel(self._tree, gravity, specialisation=self._evaluation.specialisation)
+        return self._with(gravity=gravity)
+
+    def with_payload(self, link, mass, com=(0.0, 0.0, 0.0), inertia=None):
+        """
+        Return the same robot with a payload on a link, in place of the one that it carries.
+
+        Parameters
+        ----------
+        link : str
+            Any link of the URDF; on one that no joint moves a payload has no effect.
+        mass : float
+            kg; 0 for the robot without payload, to the last bit as it was before.
+        com : array_like, shape (3,)
+            Centre of mass in the link's frame, m.
+        inertia : array_like, shape (3, 3), optional
+            Inertia tensor about the centre of mass, along the axes of the link's frame, kg m²;
+            off-diagonal entries -∫xy dm as in URDF. By default a point mass.
+
+        Returns
+        -------
+        RobotModel
+
+        Raises
+        ------
+        ArgumentError
+            If the link is unknown, a shape is wrong or a number is not finite.
+        InertiaError
+            If no real body has this mass and inertia; with every violated condition.
+
+        References
+        ----------
+        docs/mathematics.md, equation (5).
+
+        """
+        return self._with(payload=make_payload(self._tree.links, link, mass, com, inertia))
+
+    def with_rotor_inertia(self, rotor_inertia):
+        """
+        Return the same robot with the inertia of its motors' rotors.
+
+        Parameters
+        ----------
+        rotor_inertia : array_like, shape (n,), or float
+            As the joint feels it, so times the square of the gear ratio; kg m² or kg.
+
+        Returns
+        -------
+        RobotModel
+
+        Raises
+        ------
+        ArgumentError
+            If the length is wrong or a number is negative or not finite.
+
+        References
+        ----------
+        docs/mathematics.md, equation (28).
+
+        """
+        return self._with(rotor_inertia=rotor_inertia)
+
+    def with_friction(self, viscous=None, coulomb=None, smoothing_velocity=None):
+        """
+        Return the same robot with other friction; what is not given stays.
+
+        Parameters
+        ----------
+        viscous : array_like, shape (n,), or float, optional
+            N m s/rad or N s/m.
+        coulomb : array_like, shape (n,), or float, optional
+            Dry friction, N m or N.
+        smoothing_velocity : array_like, shape (n,), or float, optional
+            rad/s or m/s, > 0: through zero, dry friction changes its sign as tanh does.
+
+        Returns
+        -------
+        RobotModel
+
+        Raises
+        ------
+        ArgumentError
+            If a length is wrong, a number is negative or not finite, or a smoothing velocity
+            is zero.
+
+        References
+        ----------
+        docs/mathematics.md, equation (27).
+
+        """
+        old = self._friction
+        return self._with(friction=make_friction(
+            self.joint_names, old.viscous if viscous is None else viscous,
+            old.coulomb if coulomb is None else coulomb,
+            old.smoothing_velocity if smoothing_velocity is None else smoothing_velocity))
+
+    def _with(self, **changes):
+        arguments = {'gravity': self._gravity, 'payload': self._payload,
+                     'rotor_inertia': self._rotor_inertia, 'friction': self._friction,
+                     'specialisation': self._specialisation, **changes}
+        return type(self)(self._tree, **arguments)
 
     @property
     def is_specialised(self):
@@ -451,6 +591,95 @@ class RobotModel:
 
         """
         return self._evaluation.forward_dynamics(q, qd, tau, threads=threads)
+
+    def friction_torque(self, qd):
+        """
+        Return the efforts that friction takes, viscous q̇ + coulomb tanh(q̇ / smoothing).
+
+        Parameters
+        ----------
+        qd : array_like, shape (..., n)
+            Joint velocities, rad/s or m/s.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., n)
+            N m or N, of the sign of q̇: what a motor has to add to `inverse_dynamics`.
+
+        Raises
+        ------
+        ArgumentError
+            If the last axis of qd is not n.
+
+        References
+        ----------
+        docs/mathematics.md, equation (27).
+
+        """
+        lead, [qd] = self._evaluation.states(qd=qd)
+        return self._friction.torque(qd).reshape(*lead, self._n)
+
+    def jacobian(self, q, link, point=(0.0, 0.0, 0.0)):
+        """
+        Return the Jacobian of a point of a link: its velocity is J(q) q̇.
+
+        Parameters
+        ----------
+        q : array_like, shape (..., n)
+            Joint positions, rad or m.
+        link : str
+            Any link of the URDF.
+        point : array_like, shape (3,)
+            In the link's frame, m.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., 6, n)
+            Along the axes of the base frame: three rows of the point's velocity, m/s, then three
+            of the link's angular velocity, rad/s. Jᵀ takes a force and a moment at the point to
+            joint efforts.
+
+        Raises
+        ------
+        ArgumentError
+            If the link is unknown, or a shape is wrong.
+
+        References
+        ----------
+        docs/mathematics.md, equation (29).
+
+        """
+        check_link(self._tree.links, link)
+        return self._evaluation.jacobian(q, self._tree.links[link], point)
+
+    def link_pose(self, q, link):
+        """
+        Return where a link is: the transform from its frame to the base frame.
+
+        Parameters
+        ----------
+        q : array_like, shape (..., n)
+            Joint positions, rad or m.
+        link : str
+            Any link of the URDF.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., 4, 4)
+            Homogeneous transforms, m.
+
+        Raises
+        ------
+        ArgumentError
+            If the link is unknown, or the last axis of q is not n.
+
+        References
+        ----------
+        docs/mathematics.md, section 4: A_k.
+
+        """
+        check_link(self._tree.links, link)
+        return self._evaluation.link_pose(q, self._tree.links[link])
 
 
 def _gravity_vector(value):

@@ -16,7 +16,7 @@ Every 4x4 matrix has few different numbers, and only those are kept, one row per
     momentum  = (xx xy xz yx yy yz zx zy zz, x y z)     Lc, 3x4: left 3x3 block, last column
 
 The formulas are written once, in plain arithmetic, and run in three ways: compiled for every
-robot at once (the four functions at the top), interpreted, and on symbols, which turns them into
+robot at once (the functions at the top), interpreted, and on symbols, which turns them into
 straight-line code for one robot (`specialised`). So a formula may not ask what a number is.
 
 All of it is one file, because numba's cache on disk does not notice a change in another one.
@@ -31,14 +31,16 @@ from .jit import compiled, formula
 PARENT, KIND, COORDINATE = range(3)
 
 # Columns of `numbers`, one row per body. ROTATION is row-major; INERTIA holds the ten numbers
-# of J: mass, first moments (3), second moments xx, xy, xz, yy, yz, zz.
+# of J: mass, first moments (3), second moments xx, xy, xz, yy, yz, zz. ROTOR is on the diagonal of
+# D; a joint that mimics another has none of its own.
 ROTATION = 0
 TRANSLATION = 9
 AXIS = 12
 INERTIA = 15
 MULTIPLIER = 25
 OFFSET = 26
-WIDTH = 27
+ROTOR = 27
+WIDTH = 28
 
 # Columns of the arrays above.
 OF_ROTATION, OF_ORIGIN, OF_OFFSET = 0, 9, 12
@@ -169,6 +171,55 @@ def forward_dynamics(structure, numbers, q, qd, tau, qdd, sound):
         sound[b] = not (margins <= 0.0).any()
 
 
+@compiled
+def jacobian(structure, numbers, q, body, point, J):
+    """
+    Compute the Jacobian of a point of a body at B states.
+
+    Parameters
+    ----------
+    structure, numbers : numpy.ndarray
+        See `packing.pack`.
+    q : numpy.ndarray, shape (B, n)
+    body : int
+        Row of the body.
+    point : numpy.ndarray, shape (3,)
+        In the body's frame, m.
+    J : numpy.ndarray, shape (B, 6, n)
+        Overwritten.
+
+    """
+    work = workspace(structure.shape[0])
+    J[:] = 0.0
+    for b in range(q.shape[0]):
+        jacobian_of_state(structure, numbers, q[b], work, body, point, J[b])
+
+
+@compiled
+def body_pose(structure, numbers, q, body, A):
+    """
+    Compute the transform of a body at B states.
+
+    Parameters
+    ----------
+    structure, numbers : numpy.ndarray
+        See `packing.pack`.
+    q : numpy.ndarray, shape (B, n)
+    body : int
+        Row of the body.
+    A : numpy.ndarray, shape (B, 3, 4)
+        Overwritten: the upper three rows of the transform body → base, m.
+
+    """
+    pose, twist, composite = workspace(structure.shape[0])[:3]
+    for b in range(q.shape[0]):
+        outward(structure, numbers, q[b], pose, twist, composite)
+        for i in range(3):
+            for j in range(3):
+                A[b, i, j] = pose[body, OF_ROTATION + 3 * i + j]
+            A[b, i, 3] = pose[body, OF_ORIGIN + i]
+
+
 # One state ---------------------------------------------------------------------------------
 
 
@@ -219,6 +270,9 @@ def inverse_dynamics_of_state(structure, numbers, q, qd, qdd, work, tau):
     outward_acceleration(structure, numbers, qd, qdd, pose, twist, velocity, twist_rate,
                          acceleration)
     inward_efforts(structure, numbers, pose, twist, velocity, acceleration, K, wrench, tau)
+    for k in range(structure.shape[0]):
+        c = structure[k, COORDINATE]
+        tau[c] += numbers[k, ROTOR] * qdd[c]                                     # (28)
 
 
 @formula
@@ -230,6 +284,25 @@ def forward_dynamics_of_state(structure, numbers, q, qd, tau, rest, work, D, piv
         qdd[i] = tau[i] - qdd[i]
     mass_matrix_of_state(structure, numbers, q, work, D)
     solve_positive_definite(D, qdd, pivots, margins)
+
+
+@formula
+def jacobian_of_state(structure, numbers, q, work, body, point, J):
+    """Add the Jacobian of a point of a body to zeros, equation (29)."""
+    pose, twist, composite = work[:3]
+    outward(structure, numbers, q, pose, twist, composite)
+    # From the joint's own origin to the point, as in (21): no digits are lost far from the base.
+    r = _times(_matrix(pose, body, OF_ROTATION), (point[0], point[1], point[2]))
+    k = body
+    while k >= 0:
+        c, multiplier = structure[k, COORDINATE], numbers[k, MULTIPLIER]         # (19)
+        w, v = _vector(twist, k, 0), _vector(twist, k, 3)
+        linear = _add(_cross(w, r), v)
+        for i in range(3):
+            J[i, c] += multiplier * linear[i]
+            J[3 + i, c] += multiplier * w[i]
+        r = _add(r, _vector(pose, k, OF_OFFSET))
+        k = structure[k, PARENT]
 
 
 @formula
@@ -479,6 +552,7 @@ def inward_mass(structure, numbers, pose, twist, Jc, D):
             _add_composite(pose, Jc, j, structure[j, PARENT])
         torque, force = _force(Jc, j, _vector(twist, j, 0), _vector(twist, j, 3))
         cj, mj = structure[j, COORDINATE], numbers[j, MULTIPLIER]
+        D[cj, cj] += numbers[j, ROTOR]                                           # (28)
         i = j
         while i >= 0:
             ci, scale = structure[i, COORDINATE], numbers[i, MULTIPLIER] * mj    # (19)
@@ -522,6 +596,7 @@ def inward_dynamics(structure, numbers, pose, twist, velocity, twist_rate, Jc, L
         force2 = _add(force2, _cross(w, l))
         mirrored = _add(_subtract(trace_w, _times(_transposed(L), w)), _cross(l, v))
         cj, mj = structure[j, COORDINATE], numbers[j, MULTIPLIER]
+        D[cj, cj] += numbers[j, ROTOR]                                           # (28)
         i = j
         while i >= 0:
             ci, scale = structure[i, COORDINATE], numbers[i, MULTIPLIER] * mj    # (19)

@@ -11,14 +11,15 @@ from .closed_form import (
     OFFSET,
     PARENT,
     ROTATION,
+    ROTOR,
     TRANSLATION,
     WIDTH,
 )
 
 
-def pack(tree, gravity):
+def pack(tree, gravity, inertia=None, rotor_inertia=0.0):
     """
-    Pack a tree and the gravity acceleration for the kernels.
+    Pack a tree, the gravity acceleration and the rotors' inertia for the kernels.
 
     Parameters
     ----------
@@ -26,6 +27,10 @@ def pack(tree, gravity):
         N bodies.
     gravity : numpy.ndarray, shape (3,)
         m/s², base frame, points down.
+    inertia : numpy.ndarray, shape (N, 4, 4), optional
+        Pseudo-inertia of each body; by default the tree's own.
+    rotor_inertia : numpy.ndarray, shape (n,), or float
+        Of each independent joint, as its own side of the gear feels it, kg m² or kg.
 
     Returns
     -------
@@ -48,9 +53,11 @@ def pack(tree, gravity):
     body[:, ROTATION:TRANSLATION] = np.where(np.abs(rotation) < 2.0**-53, 0.0, rotation)
     body[:, TRANSLATION:AXIS] = tree.placement[:, :3, 3]
     body[:, AXIS:INERTIA] = tree.axis
-    body[:, INERTIA:MULTIPLIER] = ten_numbers(tree.inertia)
+    body[:, INERTIA:MULTIPLIER] = ten_numbers(tree.inertia if inertia is None else inertia)
     body[:, MULTIPLIER] = tree.multiplier
     body[:, OFFSET] = tree.offset
+    rotors = np.broadcast_to(rotor_inertia, (len(tree.joint_names),))
+    body[:, ROTOR] = np.where(tree.is_independent, rotors[tree.coordinate], 0.0)
     numbers[count, :3] = gravity
     structure.flags.writeable = numbers.flags.writeable = False
     return structure, numbers

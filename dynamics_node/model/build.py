@@ -57,6 +57,7 @@ def build_tree(description):
         links=links,
         limits=_stack([(joint.lower, joint.upper, joint.velocity, joint.effort)
                        for joint in free], (4,)),
+        friction=_friction(moving, resolved, index),
         warnings=description.warnings + _massless(moving, inertia),
     )
     _refuse_overflow(tree)
@@ -93,6 +94,16 @@ def _lumped(description, links, count):
         frame = links[link.name]
         parts[frame.body].append((link_pseudo_inertia(link.inertial), frame.placement))
     return np.array([combine(bodies) for bodies in parts])
+
+
+def _friction(moving, resolved, index):
+    # (27): the leader of a mimic joint drags it along, faster by the multiplier, and feels its
+    # effort multiplied once more.
+    friction = np.zeros((len(index), 2))
+    for joint, (leader, multiplier, _) in zip(moving, resolved, strict=True):
+        friction[index[leader]] += (multiplier * multiplier * joint.damping,
+                                    abs(multiplier) * joint.friction)
+    return friction
 
 
 def _refuse_overflow(tree):

@@ -63,6 +63,9 @@ class KinematicTree:
         Every link of the URDF.
     limits : numpy.ndarray, shape (n, 4)
         Lower, upper (rad or m; infinite if none), velocity, effort (NaN if none) per joint.
+    friction : numpy.ndarray, shape (n, 2)
+        Viscous (N m s/rad, N s/m) and Coulomb friction (N m, N) per independent joint, with that
+        of the joints that mimic it; 0 if the URDF states none.
     warnings : tuple of str
         What was accepted but looks wrong.
 
@@ -82,12 +85,19 @@ class KinematicTree:
     base_inertia: np.ndarray
     links: dict
     limits: np.ndarray
+    friction: np.ndarray
     warnings: tuple
 
     def __post_init__(self):
         for value in vars(self).values():
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
+
+    @property
+    def is_independent(self):
+        """Which bodies' joints are independent, bool, shape (N,); the others mimic one."""
+        independent = set(self.joint_names)
+        return np.array([name in independent for name in self.body_names], dtype=bool)
 
     @property
     def mimic_matrix(self):

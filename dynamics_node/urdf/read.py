@@ -133,11 +133,12 @@ def _joints(parsed, limits, axisless):
         problems += problem
         warnings += warning
         lower, upper = _position_limits(joint)
+        friction, warning = _friction(joint)
+        warnings += warning
         joints.append(Joint(
             joint.name, joint.type, joint.parent, joint.child, _placement(joint.origin), axis,
             lower, upper, **limits[joint.name],
-            damping=_number(joint.dynamics, 'damping'),
-            friction=_number(joint.dynamics, 'friction'), mimic=_mimic(joint)))
+            **friction, mimic=_mimic(joint)))
     return joints, problems, warnings
 
 
@@ -169,10 +170,17 @@ def _position_limits(joint):
             upper if abs(upper) <= LARGEST else math.inf)
 
 
-def _number(dynamics, name):
+def _friction(joint):
     # yourdfpy returns these as text; number_problems has checked it.
-    value = None if dynamics is None else getattr(dynamics, name)
-    return 0.0 if value is None else float(value)
+    values, warnings = {}, []
+    for name in ('damping', 'friction'):
+        text = None if joint.dynamics is None else getattr(joint.dynamics, name)
+        value = 0.0 if text is None else float(text)
+        if value < 0.0:
+            warnings.append(f"joint '{joint.name}': {name} is {value:g}, must be >= 0: "
+                            '0 is used')
+        values[name] = max(value, 0.0)
+    return values, warnings
 
 
 def _mimic(joint):

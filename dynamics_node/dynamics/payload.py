@@ -1,0 +1,148 @@
+"""A payload: one more rigid body on a link."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import ArgumentError, quoted
+from ..inertia import check_physical, pseudo_inertia, transform_pseudo_inertia
+
+# Links that an error message lists.
+_MOST_SHOWN = 50
+
+
+@dataclass(frozen=True)
+class Payload:
+    """
+    What a link carries.
+
+    Attributes
+    ----------
+    link : str
+    mass : float
+        kg, > 0.
+    com : numpy.ndarray, shape (3,)
+        Centre of mass in the link's frame, m; read-only.
+    inertia : numpy.ndarray, shape (3, 3)
+        Inertia tensor about the centre of mass, along the axes of the link's frame, kg m²;
+        off-diagonal entries -∫xy dm as in URDF; read-only.
+
+    """
+
+    link: str
+    mass: float
+    com: np.ndarray
+    inertia: np.ndarray
+
+    @property
+    def pseudo_inertia(self):
+        """J of the payload in the link's frame, shape (4, 4): kg m², kg m, kg."""
+        return pseudo_inertia(self.mass, self.com, self.inertia)
+
+
+def make_payload(links, link, mass, com, inertia):
+    """
+    Check a payload.
+
+    Parameters
+    ----------
+    links : dict of str to LinkFrame
+        Those of the robot.
+    link : str
+    mass : float
+        kg; 0 for no payload, whatever the rest says.
+    com : array_like, shape (3,)
+        m, in the link's frame.
+    inertia : array_like, shape (3, 3), or None
+        kg m², about the centre of mass, along the link's axes; None for a point mass.
+
+    Returns
+    -------
+    Payload or None
+
+    Raises
+    ------
+    ArgumentError
+        If the link is unknown, a shape is wrong or a number is not finite.
+    InertiaError
+        If no real body has this mass and inertia; with every violated condition.
+
+    References
+    ----------
+    docs/mathematics.md, equations (3) to (5).
+
+    """
+    try:
+        mass = float(mass)
+    except (TypeError, ValueError):
+        raise ArgumentError(f'payload mass: expected a number, kg, got {mass!r}') from None
+    if mass == 0.0:
+        return None
+    check_link(links, link)
+    com = _finite('payload com', com, (3,), 'm')
+    inertia = _finite('payload inertia', np.zeros((3, 3)) if inertia is None else inertia,
+                      (3, 3), 'kg m^2')
+    if not np.isfinite(mass):
+        raise ArgumentError(f'payload mass: expected a finite number, kg, got {mass}')
+    payload = Payload(link, mass, com, inertia)
+    check_physical(payload.pseudo_inertia)
+    return payload
+
+
+def check_link(links, link):
+    """
+    Demand that a link is one of the robot's.
+
+    Parameters
+    ----------
+    links : dict of str to LinkFrame
+    link : str
+
+    Raises
+    ------
+    ArgumentError
+        With the links that there are.
+
+    """
+    if link not in links:
+        shown = ', '.join(list(links)[:_MOST_SHOWN]) + (', ...' * (len(links) > _MOST_SHOWN))
+        raise ArgumentError(f'link: expected one of {shown}; got {quoted(link)}')
+
+
+def loaded_inertia(tree, payload):
+    """
+    Return the pseudo-inertia of every body, with the payload.
+
+    Parameters
+    ----------
+    tree : KinematicTree
+    payload : Payload or None
+
+    Returns
+    -------
+    numpy.ndarray, shape (N, 4, 4)
+        The tree's own array if nothing is carried: the same numbers to the last bit.
+
+    References
+    ----------
+    docs/mathematics.md, equation (5).
+
+    """
+    if payload is None or tree.links[payload.link].body < 0:
+        return tree.inertia
+    frame = tree.links[payload.link]
+    inertia = tree.inertia.copy()
+    inertia[frame.body] += transform_pseudo_inertia(payload.pseudo_inertia, frame.placement)
+    return inertia
+
+
+def _finite(name, value, shape, unit):
+    try:
+        array = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.shape != shape or not np.isfinite(array).all():
+        raise ArgumentError(f'{name}: expected finite numbers of shape {shape}, {unit}, '
+                            f'got {value!r}')
+    array.flags.writeable = False
+    return array
