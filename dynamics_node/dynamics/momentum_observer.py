@@ -40,7 +40,7 @@ class MomentumObserver:
 
     References
     ----------
-    docs/mathematics.md, equations (26) and (27).
+    docs/mathematics.md, equations (30) and (31).
 
     """
 
@@ -112,18 +112,22 @@ class MomentumObserver:
 
         References
         ----------
-        docs/mathematics.md, equations (26) and (27).
+        docs/mathematics.md, equations (30) and (31).
 
         """
         q, qd, effort = self._checked(q, qd, effort)
-        momentum, rate = self._balance(q, qd, effort)
         time = float(time)
-        if not (math.isfinite(time) and np.isfinite(momentum).all() and np.isfinite(rate).all()):
+        is_known = all(np.isfinite(value).all() for value in (time, q, qd, effort))
+        if is_known:
+            with np.errstate(over='ignore', invalid='ignore'):  # however large the numbers are
+                momentum, rate = self._balance(q, qd, effort)
+            is_known = np.isfinite(momentum).all() and np.isfinite(rate).all()
+        if not is_known:
             self.reset()
             return np.full(len(self._index), math.nan)
         dt = time - self._time
         if 0.0 < dt <= self._longest_step:
-            external = (momentum - self._momentum) / dt - 0.5 * (rate + self._rate)      # (27)
+            external = (momentum - self._momentum) / dt - 0.5 * (rate + self._rate)      # (31)
             # What a filter of the gain K makes of a constant input, whatever K dt is.
             estimate = self.estimate - math.expm1(-self.gain * dt) * (external - self.estimate)
             estimate.flags.writeable = False
@@ -150,12 +154,12 @@ class MomentumObserver:
         return q, np.where(self._is_other & np.isnan(qd), 0.0, qd), effort
 
     def _balance(self, q, qd, effort):
-        # Rows of the whole robot, not its sub-blocks: (26) holds row by row, also where joints
+        # Rows of the whole robot, not its sub-blocks: (30) holds row by row, also where joints
         # that were not chosen move.
         terms = self._robot.dynamics(q, qd)
         rows = self._index
         momentum = terms.mass_matrix[rows] @ qd
-        known = qd @ terms.coriolis_matrix[:, rows] - terms.gravity_torque[rows]         # (26)
+        known = qd @ terms.coriolis_matrix[:, rows] - terms.gravity_torque[rows]         # (30)
         return momentum, effort + known - self._robot.friction_torque(qd)[rows]
 
 

@@ -34,15 +34,26 @@ class Motion(NamedTuple):
 class PushedRobot:
     """A robot on a reference motion of one swing per second, with everything by MuJoCo."""
 
-    def __init__(self, text, names, seed=0, damping=0.0, amplitude=0.5):
-        """Read URDF text; `names` are its n independent joints, `damping` [N m s/rad or N s/m]."""
+    def __init__(self, text, names, friction, seed=0, amplitude=0.5):
+        """
+        Read URDF text; `names` are its n independent joints.
+
+        `friction` are a viscous coefficient [N m s/rad or N s/m], a dry effort [N m or N] and
+        the speed [rad/s or m/s] that smooths it; each the same for all joints.
+
+        """
         rng = np.random.default_rng(seed)
         self.oracle, self.names = MujocoOracle(text), names
         self.n = len(names)
-        self.damping = np.broadcast_to(damping, self.n)
+        self._friction = friction
         self.start = rng.uniform(-1.0, 1.0, self.n)
         self._amplitude, self._phase = amplitude, rng.uniform(0.0, 2 * np.pi, self.n)
         self._fold, self._offset = self.oracle.fold(names)
+
+    def friction(self, qd):
+        """Return what friction takes, shape (n,)."""
+        viscous, dry, smoothing = self._friction
+        return viscous * qd + dry * np.tanh(qd / smoothing)
 
     def motor(self, t, q, qd):
         """Return the efforts of the motors, shape (n,)."""
@@ -51,7 +62,7 @@ class PushedRobot:
                                              -w * w * np.sin(phase)])
         qdd = (wanted[2] + 2 * STIFFNESS * (wanted[1] - qd)
                + STIFFNESS ** 2 * (self.start + wanted[0] - q))
-        return self.oracle.inverse_dynamics(self.names, q, qd, qdd) + self.damping * qd
+        return self.oracle.inverse_dynamics(self.names, q, qd, qdd) + self.friction(qd)
 
     def wrench_on_tip(self, q, wrench):
         """Return what a force [N] and a moment [N m] at the tip are in the joints, shape (n,)."""
@@ -81,7 +92,7 @@ class PushedRobot:
             def derivative(t, x, is_pushed=is_pushed):
                 q, qd, r = x[:n], x[n:2 * n], x[2 * n:]
                 outside = external(t, q) if is_pushed else np.zeros(n)
-                effort = self.motor(t, q, qd) - self.damping * qd + outside
+                effort = self.motor(t, q, qd) - self.friction(qd) + outside
                 qdd = self.oracle.forward_dynamics(self.names, q, qd, effort)
                 return np.concatenate([qd, qdd, gain * (outside - r)])
 
