@@ -73,6 +73,7 @@ class MomentumObserver:
         self.gain = _positive('gain', gain, '1/s')
         self._longest_step = _positive('longest_step', longest_step, 's')
         self._robot = robot
+        self.estimate = np.zeros(len(selection.names))
         self._index = selection.index
         self._is_other = np.ones(len(robot.joint_names), dtype=bool)
         self._is_other[self._index] = False

@@ -20,6 +20,8 @@ class EffortAtRest:
 
     Attributes
     ----------
+    names : tuple of str
+        Of the m joints.
     doubt : str
         Why the efforts can hardly be torques, with both numbers; '' if nothing is wrong, or
         nothing has been found out yet.
@@ -38,7 +40,7 @@ class EffortAtRest:
             Effort limits, N m or N; NaN where there is none.
 
         """
-        self._names = tuple(names)
+        self.names = tuple(names)
         limits = np.asarray(limits, dtype=float)
         self._small = np.where(np.isfinite(limits), SMALL_PART * limits, SMALL)
         self.doubt = ''
@@ -70,7 +72,7 @@ class EffortAtRest:
             return False
         if self._begin is None:
             self._begin, self._count = time, 0
-            self._sums = np.zeros((2, len(self._names)))
+            self._sums = np.zeros((2, len(self.names)))
         self._sums += effort, gravity_torque
         self._count += 1
         if time - self._begin < REST:
@@ -87,6 +89,6 @@ class EffortAtRest:
             return False
         is_likely = abs(effort - torque) <= LIKELY * max(abs(effort), abs(torque))
         self.doubt = '' if is_likely else (
-            f'{self._names[joint]} reports {effort:.4g} at rest, where the model says that '
+            f'{self.names[joint]} reports {effort:.4g} at rest, where the model says that '
             f'{torque:.4g} holds it')
         return True

@@ -146,7 +146,7 @@ class JointStateBuffer:
             self.rejected[error.kind] += 1
             raise
         if efforts is not None:
-            self._take_efforts(efforts)
+            self._take_efforts(efforts, len(names))
         if self._jumps and any(target == self._jumped_joint for _, target in self._needed_pairs):
             self._jumps = 0  # it is the joint itself that stands where it may
         self.accepted += 1
@@ -181,9 +181,9 @@ class JointStateBuffer:
         self._oldest = now if is_complete else min(
             (self._time[i] for i in self._needed), default=-math.inf)
 
-    def _take_efforts(self, efforts):
+    def _take_efforts(self, efforts, count):
         effort = self._effort
-        if len(efforts) != len(self._known_names):
+        if len(efforts) != count:
             for _, target in self._pairs:
                 effort[target] = math.nan
             return

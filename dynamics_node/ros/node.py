@@ -10,6 +10,7 @@ from .command_output import CommandOutput
 from .description_source import DescriptionSource
 from .diagnostics import Diagnostics
 from .enabling import Enabling
+from .external_torque import ExternalTorque
 from .guard import logged
 from .mismatch import mismatches
 from .parameter_table import ParameterError
@@ -60,6 +61,7 @@ class DynamicsNode(Node):
         self._start = time.monotonic()
         self.parameters = Parameters(self)
         self._results = Results(self, self.parameters)
+        self._external_torque = ExternalTorque(self, self.parameters)
         self.output = CommandOutput(self, self.parameters, self._get_robot,
                                     self._output_changed)
         self.states = StateInput(self, self.parameters, self._get_robot, self.output.channel,
@@ -69,7 +71,7 @@ class DynamicsNode(Node):
         self._enabling = Enabling(self, self.parameters, self._get_robot, self.output,
                                   self._rivals)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.states,
-                                        self.output)
+                                        self.output, self._external_torque)
         self._answers = DynamicsServices(self, self._get_robot, self.parameters)
         self._look_for_rivals = self.create_timer(
             RIVALS_EVERY, self._stop_for_rivals, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -144,6 +146,7 @@ class DynamicsNode(Node):
         if self._robot is not None:
             self._robot.buffer.tolerance = StampTolerance(values['state_timeout'])
         self.output.configure()
+        self.states.with_effort = self._external_torque.configure()
 
     def on_state(self, robot, now, stamp):
         """Compute what follows from a state that is fit for use, and publish it."""
@@ -160,6 +163,8 @@ class DynamicsNode(Node):
             self._has_states = True
             self.logger.info('joint states arrive: publishing gravity torque')
         self._results.publish(robot, stamp, effort)
+        if self._external_torque.is_on:
+            self._external_torque.on_state(robot, stamp)
 
     @logged
     def _every_second(self):

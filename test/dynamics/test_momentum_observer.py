@@ -123,7 +123,7 @@ def test_it_finds_a_push_in_a_simulation_of_mujoco_itself():
     assert errors[1] < ERROR * np.abs(motion.lagged).max()
 
 
-LOAD = dict(mass=2.0, com=[0.05, 0.02, 0.1], inertia=np.diag([0.01, 0.02, 0.015]))
+LOAD = {'mass': 2.0, 'com': [0.05, 0.02, 0.1], 'inertia': np.diag([0.01, 0.02, 0.015])}
 ROTORS = 0.1  # kg m²
 
 
@@ -256,11 +256,11 @@ def test_an_estimate_that_was_handed_out_is_never_changed(carriage):
 # Wrong arguments -----------------------------------------------------------------------------
 
 @pytest.mark.parametrize('arguments, message', [
-    (dict(gain=0.0), 'gain: expected a positive finite number, 1/s, got 0.0'),
-    (dict(gain=math.nan), 'gain: expected a positive'),
-    (dict(gain='fast'), "got 'fast'"),
-    (dict(gain=1.0, longest_step=-1), 'longest_step: expected a positive finite number, s'),
-    (dict(gain=1.0, joints=['hing']), "'hing' is not a joint"),
+    ({'gain': 0.0}, 'gain: expected a positive finite number, 1/s, got 0.0'),
+    ({'gain': math.nan}, 'gain: expected a positive'),
+    ({'gain': 'fast'}, "got 'fast'"),
+    ({'gain': 1.0, 'longest_step': -1}, 'longest_step: expected a positive finite number, s'),
+    ({'gain': 1.0, 'joints': ['hing']}, "'hing' is not a joint"),
 ], ids=str)
 def test_wrong_arguments_are_refused_with_the_reason(arguments, message):
     with pytest.raises(ArgumentError, match=message):

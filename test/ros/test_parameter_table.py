@@ -55,11 +55,20 @@ def test_integers_are_taken_for_doubles():
     assert check_all({'effort_limits': [87, 12]})['effort_limits'] == (87.0, 12.0)
 
 
+def flat(values, prefix=''):
+    """Yield the names and values of a parameter file, as ROS joins them."""
+    for name, value in values.items():
+        if isinstance(value, dict):
+            yield from flat(value, f'{prefix}{name}.')
+        else:
+            yield prefix + name, value
+
+
 def test_the_parameter_file_has_every_parameter_with_its_default():
     text = (ROOT / 'config' / 'dynamics.yaml').read_text()
     [node] = yaml.safe_load(text).values()
     # An empty list cannot be written in a parameter file, so those stand in comments.
-    written = node['ros__parameters']
+    written = dict(flat(node['ros__parameters']))
     for parameter in PARAMETERS:
         if parameter.default == ():
             assert re.search(rf'^ +# {parameter.name}: \[', text, re.M), parameter.name
@@ -71,7 +80,7 @@ def test_the_parameter_file_has_every_parameter_with_its_default():
 
 def test_the_readme_has_every_parameter_with_its_default():
     text = (ROOT / 'README.md').read_text()
-    rows = dict(re.findall(r'^\| `([a-z_]+)` \| (.*?) \|', text, re.M))
+    rows = dict(re.findall(r'^\| `([a-z_.]+)` \| (.*?) \|', text, re.M))
     for parameter in PARAMETERS:
         default = parameter.default
         if isinstance(default, bool):

@@ -1,4 +1,4 @@
-"""A robot that is driven, slowed by friction and pushed: MuJoCo accelerates it, scipy integrates."""
+"""A driven and pushed robot with friction: MuJoCo accelerates it, scipy integrates."""
 
 from typing import NamedTuple
 
