@@ -24,3 +24,7 @@ class Pacer:
         steps = max(int((now - self._simulated_to) / self._time_step + 1e-6), 0)
         self._simulated_to += steps * self._time_step
         return steps
+
+    def behind(self, now: float) -> float:
+        """Return how far the simulation is behind the clock reading `now` [s]."""
+        return now - self._simulated_to

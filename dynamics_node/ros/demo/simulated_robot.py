@@ -15,11 +15,13 @@ from typing import Any
 
 import rclpy
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
+from rclpy.time import Time
 from rclpy.utilities import remove_ros_args
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
@@ -37,6 +39,9 @@ from .viewer import open_viewer
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 VIEWER_PERIOD = 1 / 30  # [s]
+# Two clocks are read at once if the process has not lost its processor in between [s]; so often
+# it is tried.
+AT_ONCE, READINGS = 5e-5, 5
 
 
 class SimulatedRobot(Node):
@@ -133,11 +138,13 @@ class SimulatedRobot(Node):
     def _tick(self) -> None:
         """Advance to the present and publish."""
         now = time.monotonic()
+        steps = self._pacer.steps_due(now)
         try:
-            self.arm.step(self._pacer.steps_due(now))
+            self.arm.step(steps)
         except UnstableError as error:
             self.get_logger().error(str(error))
-        self._publish()
+        if steps:
+            self._publish()
         if self._viewer is not None and now >= self._next_view:
             self._viewer.sync()
             self._next_view = now + VIEWER_PERIOD
@@ -145,11 +152,28 @@ class SimulatedRobot(Node):
     def _publish(self) -> None:
         """Publish the joint states in alphabetical order."""
         message = JointState(name=self._names)
-        message.header.stamp = self.get_clock().now().to_msg()
+        message.header.stamp = self._simulated_time().to_msg()
         message.position = self.arm.position[self._order].tolist()
         message.velocity = self.arm.velocity[self._order].tolist()
         message.effort = self.arm.effort[self._order].tolist()
         self._states.publish(message)
+
+    def _simulated_time(self) -> Time:
+        """
+        Return the time of the simulated state, not that of its publication.
+
+        Whoever derives accelerations or momenta from the states needs the time that has passed
+        for the arm: half a millisecond too much is a quarter of what is between two states.
+
+        """
+        readings = []
+        for _ in range(READINGS):
+            before, clock, after = time.monotonic(), self.get_clock().now(), time.monotonic()
+            readings.append((after - before, before, clock))
+            if after - before < AT_ONCE:
+                break
+        _, now, clock = min(readings)
+        return clock - Duration(seconds=self._pacer.behind(now))
 
     def _on_command(self, message: Float64MultiArray) -> None:
         """Take a command and hold it until the next one."""

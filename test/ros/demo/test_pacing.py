@@ -25,3 +25,12 @@ def test_a_clock_that_stands_still_gives_no_steps():
     pacer = Pacer(0.001, 5.0)
     assert pacer.steps_due(5.0) == 0
     assert pacer.steps_due(4.0) == 0
+
+
+def test_it_says_how_far_the_simulation_is_behind():
+    """By what is left of a step, and by a pause that is caught up step by step."""
+    pacer = Pacer(0.001, 1.0)
+    assert pacer.behind(1.0) == 0.0
+    pacer.steps_due(1.0104)
+    assert pacer.behind(1.0104) == pytest.approx(0.0004)
+    assert pacer.behind(1.0204) == pytest.approx(0.0104)
