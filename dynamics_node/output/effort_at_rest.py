@@ -77,7 +77,7 @@ class EffortAtRest:
         self._count += 1
         if time - self._begin < REST:
             return False
-        measured, expected = self._sums / self._count
+        measured, expected = self._sums / self._count + 0.0  # which makes no zero negative
         self.forget()
         return self._judge(measured, expected)
 
