@@ -23,10 +23,10 @@ setup(
         (f'share/{package_name}/config', files('config', '*.yaml') + files('config', '*.xml')),
         (f'share/{package_name}/config/robots', files('config/robots', '*.urdf')),
     ],
-    install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'yourdfpy'],
+    install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'scipy', 'yourdfpy'],
     extras_require={
         'demo': ['mujoco', 'matplotlib', 'rich'],
-        'test': ['pytest', 'pytest-xdist', 'hypothesis', 'scipy', 'pin', 'mujoco',
+        'test': ['pytest', 'pytest-xdist', 'hypothesis', 'pin', 'mujoco',
                  'example-robot-data'],
     },
     python_requires='>=3.10',

@@ -1,5 +1,7 @@
 """
-Robot dynamics from a URDF: mass matrix, Coriolis matrix, gravity torque. Needs no ROS.
+Robot dynamics from a URDF: mass matrix, Coriolis matrix, gravity torque and what follows.
+
+Needs no ROS.
 
     from dynamics_node import RobotModel
     robot = RobotModel.from_urdf('arm.urdf')
@@ -18,19 +20,31 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from .dynamics import DynamicsTerms, MomentumObserver, RobotModel
+    from .dynamics import (
+        complete_trajectory,
+        DynamicsTerms,
+        Friction,
+        MaxPayload,
+        MomentumObserver,
+        over_limit,
+        OverLimit,
+        Payload,
+        RobotModel,
+        Trajectory,
+    )
 
 __version__ = '0.1.0'
 
 __all__ = [
-    'ArgumentError', 'DynamicsError', 'DynamicsTerms', 'InertiaError', 'MomentumObserver',
-    'RobotDescriptionError', 'RobotModel', 'SingularMassMatrixError', '__version__',
+    'ArgumentError', 'DynamicsError', 'DynamicsTerms', 'Friction', 'InertiaError', 'MaxPayload',
+    'MomentumObserver', 'OverLimit', 'Payload', 'RobotDescriptionError', 'RobotModel',
+    'SingularMassMatrixError', 'Trajectory', '__version__', 'complete_trajectory', 'over_limit',
 ]
 
 
 def __getattr__(name):
     # Loaded on first use: numba takes a second, and not everything in here needs it.
-    if name in ('DynamicsTerms', 'MomentumObserver', 'RobotModel'):
+    if name in __all__:
         from . import dynamics
         return getattr(dynamics, name)
     raise AttributeError(f'module {__name__!r} has no attribute {name!r}')

@@ -6,9 +6,11 @@ import numpy as np
 
 from .evaluation import Evaluation, SHAPES
 from .friction import make_friction, per_joint, SMOOTHING_VELOCITY
+from .max_payload import max_payload
 from .payload import check_link, loaded_inertia, make_payload
 from .specialisation import Specialisation
 from .terms import DynamicsTerms
+from .trajectory import complete_trajectory
 from ..errors import ArgumentError
 from ..kernels.packing import pack
 from ..kernels.specialised import make_callable
@@ -156,6 +158,11 @@ class RobotModel:
     def link_names(self):
         """Names of all links, the root link first."""
         return tuple(self._tree.links)
+
+    @property
+    def tip_link(self):
+        """Name of the last link of the longest chain of joints."""
+        return self._tree.tip_link
 
     @property
     def warnings(self):
@@ -680,6 +687,89 @@ class RobotModel:
         """
         check_link(self._tree.links, link)
         return self._evaluation.link_pose(q, self._tree.links[link])
+
+    def trajectory_effort(self, time, positions, velocities=None, accelerations=None):
+        """
+        Return the efforts along a trajectory: inverse dynamics at each of its points.
+
+        Parameters
+        ----------
+        time : array_like, shape (N,)
+            s; strictly increasing if velocities or accelerations are missing.
+        positions : array_like, shape (N, n)
+            Joint positions, rad or m.
+        velocities, accelerations : array_like, shape (N, n), optional
+            rad/s or m/s, rad/s² or m/s². A point without them is a row of NaN. What is missing
+            is obtained by a spline: see `complete_trajectory`, which also says what it was.
+
+        Returns
+        -------
+        numpy.ndarray, shape (N, n)
+            N m or N. `over_limit` tells which of them are too much.
+
+        Raises
+        ------
+        ArgumentError
+            If there is no point, shapes do not fit, a number is not finite, or times do not
+            increase where a spline is needed.
+
+        References
+        ----------
+        docs/mathematics.md, equations (22), (23), (30) and (31).
+
+        """
+        motion = complete_trajectory(time, positions, velocities, accelerations)
+        if motion.positions.shape[1] != self._n:
+            raise ArgumentError(f'positions: expected shape (N, {self._n}) for joints '
+                                f'{list(self.joint_names)}, got {motion.positions.shape}')
+        return self.inverse_dynamics(motion.positions, motion.velocities, motion.accelerations)
+
+    def max_payload(self, q, link, point=(0.0, 0.0, 0.0), *, qd=None, qdd=None,
+                    effort_limits=None):
+        """
+        Return the largest point mass that a link may carry within all effort limits.
+
+        Along the real gravity vector, whatever the mounting. Every mass from zero up to this one
+        is within the limits too. It takes the place of a payload that the model has, which does
+        not count, nor does friction. A trajectory is a batch: `least()` of the answer is its
+        largest payload.
+
+        Parameters
+        ----------
+        q : array_like, shape (..., n)
+            Joint positions, rad or m.
+        link : str
+            A link of the URDF.
+        point : array_like, shape (3,)
+            Where the mass is, in the link's frame, m.
+        qd, qdd : array_like, shape (..., n), optional
+            Joint velocities and accelerations; zero if not given. Batch axes broadcast.
+        effort_limits : array_like, shape (n,), optional
+            N m or N, those of the URDF if not given. NaN: the joint has no limit.
+
+        Returns
+        -------
+        MaxPayload
+            Unpacks as mass (...), kg, and joint (...), the index of the joint that allows no
+            more. Over a limit already: 0 and the joint that is most so. No limit in the way:
+            infinite and -1.
+
+        Raises
+        ------
+        ArgumentError
+            If shapes do not fit, the link is unknown, the point is not finite or a limit is
+            negative.
+
+        References
+        ----------
+        docs/mathematics.md, equation (32).
+
+        """
+        rest = np.zeros(self._n)
+        unloaded = self if self._payload is None else self._with(payload=None)
+        return max_payload(unloaded, q, link, point, rest if qd is None else qd,
+                           rest if qdd is None else qdd,
+                           self.effort_limits if effort_limits is None else effort_limits)
 
 
 def _gravity_vector(value):

@@ -100,6 +100,15 @@ class KinematicTree:
         return np.array([name in independent for name in self.body_names], dtype=bool)
 
     @property
+    def tip_link(self):
+        """The last link of the longest chain of moving bodies; the root link if nothing moves."""
+        depth: list[int] = []
+        for parent in self.parent:
+            depth.append(1 if parent < 0 else depth[parent] + 1)
+        return max(reversed(self.links), key=lambda link: (
+            depth[self.links[link].body] if self.links[link].body >= 0 else 0))
+
+    @property
     def mimic_matrix(self):
         """
         B of q_bodies = B q + b, shape (N, n).

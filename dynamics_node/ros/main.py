@@ -2,6 +2,7 @@
 
 import gc
 import sys
+import threading
 import time
 import traceback
 
@@ -70,6 +71,7 @@ def _spin(node, signals, options):
     executor.add_node(node)
     signals.call(node.create_guard_condition(lambda: None).trigger)
     _spare_the_garbage_collector()
+    threading.Thread(target=_load_the_rest, name='dynamics_node load', daemon=True).start()
     while not signals.name:
         _spin_once(node, executor)
     _bring_to_rest(node, executor, signals.name)
@@ -82,6 +84,14 @@ def _spare_the_garbage_collector():
     # objects, would be looked through in the middle of a control cycle.
     gc.freeze()
     gc.enable()
+
+
+def _load_the_rest():
+    # What only some services need. Imported by the first of them, it would hold up the control
+    # loop for half a second, and at the start everybody.
+    import scipy.interpolate  # noqa: F401
+    import scipy.spatial.transform  # noqa: F401
+    gc.freeze()
 
 
 def _spin_once(node, executor, timeout=None):

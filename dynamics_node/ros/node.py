@@ -3,24 +3,29 @@
 import math
 import time
 
+import numpy as np
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from .command_output import CommandOutput
+from .compensation import Compensation
 from .description_source import DescriptionSource
 from .diagnostics import Diagnostics
 from .enabling import Enabling
 from .external_torque import ExternalTorque
 from .guard import logged
 from .mismatch import mismatches
+from .model_settings import configured, PER_JOINT
 from .parameter_table import ParameterError
 from .parameters import Parameters
 from .results import Results
 from .rivals import Rivals
 from .robot import Robot
 from .services import DynamicsServices
+from .setting_services import SettingServices
 from .state_input import StateInput
 from .throttle import Throttle
+from .trajectory_services import TrajectoryServices
 from ..dynamics import RobotModel
 from ..errors import DynamicsError
 from ..output import StampTolerance
@@ -72,7 +77,9 @@ class DynamicsNode(Node):
                                   self._rivals)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.states,
                                         self.output, self._external_torque)
-        self._answers = DynamicsServices(self, self._get_robot, self.parameters)
+        self._compensation = Compensation(self, self.parameters)
+        self._answering = [kind(self, self._get_robot, self.parameters) for kind in (
+            DynamicsServices, SettingServices, TrajectoryServices)]
         self._look_for_rivals = self.create_timer(
             RIVALS_EVERY, self._stop_for_rivals, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._look_for_rivals.cancel()
@@ -95,11 +102,12 @@ class DynamicsNode(Node):
                                 'disable it first')
             return False
         try:
-            model = RobotModel.from_urdf(source, self.parameters['gravity'])
+            model = RobotModel.from_urdf(source)
             if not model.joint_names:
                 raise DynamicsError('the robot has no joint that can be moved')
             robot = Robot(model, self.parameters['joints'])
-            self._check_against_robot(self.parameters.values, robot)
+            self._check_lengths(self.parameters.values, robot)
+            robot.configure(self.parameters.values)
         except (DynamicsError, ParameterError) as error:
             if origin.startswith('parameter'):
                 raise
@@ -111,35 +119,52 @@ class DynamicsNode(Node):
         is_first = self._robot is None
         self._robot = robot
         self._configure(self.parameters.values)
-        self._announce(model, robot, origin)
+        self._announce(robot, origin)
         if is_first:
             self.output.announce()
         return True
 
-    def _announce(self, model, robot, origin):
-        self.logger.info(f'robot description from {origin}: {model}; joints: '
+    def _announce(self, robot, origin):
+        self.logger.info(f'robot description from {origin}: {robot.model}; joints: '
                          f'{", ".join(robot.joint_names)}')
-        for warning in model.warnings:
+        for warning in robot.model.warnings:
             self.logger.warning(warning)
 
-    def _check_against_robot(self, values, robot=None):
-        robot = robot or self._robot
-        if robot is None:
-            return
+    def _check_lengths(self, values, robot):
         count = len(robot.joint_names)
-        for name in ('effort_limits', 'effort_rate_limits', 'effort_scale'):
-            if len(values[name]) not in (0, count):
+        for name in ('effort_limits', 'effort_rate_limits', 'effort_scale', *PER_JOINT,
+                     'friction.smoothing_velocity'):
+            allowed = (0, 1, count) if name == 'friction.smoothing_velocity' else (0, count)
+            if len(values[name]) not in allowed:
                 raise ParameterError(f'{name}: expected {count} numbers for '
                                      f'{", ".join(robot.joint_names)}, or none; got '
                                      f'{len(values[name])}')
-        if self.output.channel.machine.is_on and robot.unlimited_joints(values['effort_limits']):
+
+    def _check_against_robot(self, values):
+        robot, before = self._robot, self.parameters.values
+        if robot is None:
+            return
+        self._check_lengths(values, robot)
+        model = configured(robot, values, before)
+        if not self.output.channel.machine.is_on:
+            return
+        if robot.unlimited_joints(values['effort_limits']):
             raise ParameterError('effort_limits: expected a limit for every joint while output '
                                  'is on, got none for '
                                  + ', '.join(robot.unlimited_joints(values['effort_limits'])))
+        if np.dot(values['gravity'], before['gravity']) < 0.0:
+            # What an accelerometer at rest says is the opposite of gravity.
+            raise ParameterError('gravity: expected a vector that points to the earth, got one '
+                                 'that is turned by more than 90 degrees against the one in '
+                                 'force: while output is on, this would throw the arm')
+        over = robot.over_limits(values, model) if model is not robot.model else ''
+        if over and not robot.over_limits(before):
+            raise ParameterError('while output is on, expected what the arm can hold, but its '
+                                 f'gravity torque would be above the limit: {over}')
 
-    def _reconfigured(self, values):
+    def _reconfigured(self, values, before):
         if self._robot is not None:
-            self._robot.model = self._robot.model.with_gravity(values['gravity'])
+            self._robot.configure(values, before)
         self._configure(values)
 
     def _configure(self, values):
@@ -151,7 +176,8 @@ class DynamicsNode(Node):
     def on_state(self, robot, now, stamp):
         """Compute what follows from a state that is fit for use, and publish it."""
         effort = robot.gravity_torque()
-        self.output.on_effort(now, effort)
+        self.output.on_effort(now, self._compensation.effort(robot, effort)
+                              if self.output.channel.machine.is_driving else effort)
         if not all(map(math.isfinite, effort.tolist())):
             if self._not_finite.is_due():
                 self.logger.warning('gravity torque is not finite at this joint state: not '

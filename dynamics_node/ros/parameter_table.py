@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import math
 from typing import Any
 
+from ..dynamics.friction import SMOOTHING_VELOCITY
 from ..output.channel import STOP_BEHAVIORS
 
 MAX_GRAVITY = 20.0
@@ -40,6 +41,8 @@ class Parameter:
         Allowed values of a text.
     length : int or None
         How many numbers an array must have; None for any.
+    takes_one : bool
+        Whether one number may stand for an array: for all joints.
 
     """
 
@@ -53,6 +56,7 @@ class Parameter:
     low_open: bool = False
     choices: tuple = ()
     length: int | None = None
+    takes_one: bool = False
 
     def check(self, value):
         """
@@ -100,6 +104,8 @@ class Parameter:
                 else f'a number {low} and <= {self.high:g}')
 
     def _numbers(self, value):
+        if self.takes_one and isinstance(value, (int, float)):
+            value = (value,)
         if isinstance(value, (str, bytes)) or not hasattr(value, '__len__'):
             raise self._error('a list of numbers', value)
         if self.length is not None and len(value) != self.length:
@@ -169,6 +175,26 @@ PARAMETERS = (
               'N/s. Empty: the effort limit per 0.1 s', low=0.0, low_open=True),
     Parameter('effort_scale', DOUBLES, (), 'Gain on the model effort per joint. Empty: 1',
               low=0.0, high=10.0),
+    Parameter('compensate.gravity', FLAG, True, 'Whether the gravity torque G is part of the '
+              'command'),
+    Parameter('compensate.coriolis', FLAG, False, 'Whether C qd is part of the command'),
+    Parameter('compensate.friction', FLAG, False, 'Whether friction is part of the command'),
+    Parameter('friction.viscous', DOUBLES, (), 'Viscous friction per joint, N m s/rad or N s/m, '
+              'in the order of joints. Empty: <dynamics damping> of the URDF', low=0.0),
+    Parameter('friction.coulomb', DOUBLES, (), 'Dry friction per joint, N m or N. Empty: '
+              '<dynamics friction> of the URDF', low=0.0),
+    Parameter('friction.smoothing_velocity', DOUBLES, (), 'Speed at which dry friction has 76 % '
+              'of its size, rad/s or m/s: one number, or one per joint. Empty: '
+              f'{SMOOTHING_VELOCITY:g}', low=0.0, low_open=True, takes_one=True),
+    Parameter('rotor_inertia', DOUBLES, (), 'Inertia of the rotors as the joints feel it, with '
+              'the square of the gear ratio, kg m² or kg, per joint. Empty: 0', low=0.0),
+    Parameter('payload.link', TEXT, '', 'Link that carries the payload'),
+    Parameter('payload.mass', DOUBLE, 0.0, 'Mass of the payload, kg; 0: there is none', low=0.0),
+    Parameter('payload.com', DOUBLES, (0.0, 0.0, 0.0), 'Centre of mass of the payload in the '
+              'frame of its link, m', length=3),
+    Parameter('payload.inertia', DOUBLES, (0.0,) * 6, 'Inertia tensor of the payload about its '
+              'centre of mass along the axes of its link, kg m²: ixx, ixy, ixz, iyy, iyz, izz',
+              length=6),
 )
 
 
@@ -202,6 +228,9 @@ def check_all(values):
     size = math.sqrt(sum(item * item for item in checked.get('gravity', ())))
     if size > MAX_GRAVITY:
         problems.append(f'gravity: expected at most {MAX_GRAVITY:g} m/s^2, got {size:.6g}')
+    if checked.get('payload.mass') and not checked.get('payload.link', 'unknown'):
+        problems.append('payload.link: expected the link that carries payload.mass, got none; '
+                        'set payload.link first')
     if problems:
         raise ParameterError('; '.join(problems))
     return checked

@@ -11,10 +11,12 @@ from .parameter_table import (
     DOUBLE,
     DOUBLES,
     FLAG,
+    ParameterError,
     PARAMETERS,
     TEXT,
     TEXTS,
 )
+from .throttle import Throttle
 
 _TYPES = {
     DOUBLE: RosParameter.Type.DOUBLE, DOUBLES: RosParameter.Type.DOUBLE_ARRAY,
@@ -50,6 +52,7 @@ class Parameters:
         """
         self._node = node
         self.logger = node.get_logger()
+        self._logged: dict[str, Throttle] = {}
         self.values = check_all({name: value for name, value in self._declare().items()
                                  if value is not None})
         self._warn_of_misspelt()
@@ -60,8 +63,8 @@ class Parameters:
 
         Parameters
         ----------
-        on_change : callable(dict)
-            Called with all values after some were set.
+        on_change : callable(dict, dict)
+            Called after some were set, with all values and those before.
         further_check : callable(dict)
             Raises ParameterError for values that do not fit the robot.
 
@@ -73,6 +76,27 @@ class Parameters:
     def __getitem__(self, name):
         """Return the value in force."""
         return self.values[name]
+
+    def set(self, values):
+        """
+        Set some parameters together, as if somebody had done it from outside.
+
+        Parameters
+        ----------
+        values : dict of str to Any
+            Name → value in its kind.
+
+        Raises
+        ------
+        ParameterError
+            If they are refused; nothing has changed then.
+
+        """
+        kinds = {parameter.name: parameter for parameter in PARAMETERS}
+        result = self._node.set_parameters_atomically(
+            [_ros_parameter(kinds[name], value) for name, value in values.items()])
+        if not result.successful:
+            raise ParameterError(result.reason)
 
     def _declare(self):
         given = {}
@@ -109,9 +133,10 @@ class Parameters:
             return
         before, self.values = self.values, self._merged(ros_parameters)
         for name, value in self.values.items():
-            if value != before[name]:
+            # Somebody may say where the earth is a hundred times a second.
+            if value != before[name] and self._logged.setdefault(name, Throttle(0.5)).is_due():
                 self.logger.info(f'parameter {name} changed: {before[name]} -> {value}')
-        self._on_change(self.values)
+        self._on_change(self.values, before)
 
     def _merged(self, ros_parameters):
         values = dict(self.values)

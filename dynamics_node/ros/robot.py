@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from .model_settings import configured
 from ..dynamics import JointSelection
 from ..errors import DynamicsError
 from ..output import JointStateBuffer, MotionLimits
@@ -18,7 +19,7 @@ class Robot:
     Attributes
     ----------
     model : RobotModel
-        Under the gravity in force; replaced when gravity changes.
+        As the parameters say; replaced when they change.
     selection : JointSelection
         The parameter `joints`.
     buffer : JointStateBuffer
@@ -52,6 +53,25 @@ class Robot:
             MotionLimits(model.joint_names, model.velocity_limits, model.position_limits,
                          model.is_continuous))
         self.has_all_in_order = self.selection.names == tuple(model.joint_names)
+
+    def configure(self, values, before=None):
+        """
+        Bring the model in line with the parameters.
+
+        Parameters
+        ----------
+        values : dict of str to Any
+            Of the parameters.
+        before : dict of str to Any, optional
+            Those that the model was made with.
+
+        Raises
+        ------
+        DynamicsError
+            See `configured`.
+
+        """
+        self.model = configured(self, values, before)
 
     @property
     def joint_names(self):
@@ -108,6 +128,31 @@ class Robot:
 
         """
         return np.array(given) if given else self.model.effort_limits[self.selection.index]
+
+    def over_limits(self, values, model=None):
+        """
+        Say which chosen joints cannot hold the robot still at the newest state.
+
+        Parameters
+        ----------
+        values : dict of str to Any
+            Of the parameters.
+        model : RobotModel, optional
+            Instead of the one in force.
+
+        Returns
+        -------
+        str
+            Joint, gravity torque and limit each; '' if there is none, or no state.
+
+        """
+        if not self.buffer.is_complete:
+            return ''
+        G = (model or self.model).gravity_torque(self.buffer.position)[self.selection.index]
+        G = G * (values['effort_scale'] or 1.0)
+        limits = self.effort_limits(values['effort_limits'])
+        return '; '.join(f'{name}: {effort:.6g}, limit {limit:.6g}' for name, effort, limit in zip(
+            self.joint_names, G, limits, strict=True) if abs(effort) > limit)
 
     def unlimited_joints(self, given):
         """Return the names of the chosen joints that have no effort limit, a list of str."""

@@ -55,9 +55,9 @@ def test_integers_are_taken_for_doubles():
     assert check_all({'effort_limits': [87, 12]})['effort_limits'] == (87.0, 12.0)
 
 
-def flat(values, prefix=''):
-    """Yield the names and values of a parameter file, as ROS joins them."""
-    for name, value in values.items():
+def flat(tree, prefix=''):
+    """Yield the dotted names and values of nested parameters."""
+    for name, value in tree.items():
         if isinstance(value, dict):
             yield from flat(value, f'{prefix}{name}.')
         else:
@@ -71,7 +71,7 @@ def test_the_parameter_file_has_every_parameter_with_its_default():
     written = dict(flat(node['ros__parameters']))
     for parameter in PARAMETERS:
         if parameter.default == ():
-            assert re.search(rf'^ +# {parameter.name}: \[', text, re.M), parameter.name
+            assert re.search(rf'^ +# {re.escape(parameter.name)}: \[', text, re.M), parameter.name
         else:
             value = written.pop(parameter.name)
             assert parameter.check(value) == parameter.default, parameter.name
@@ -86,5 +86,5 @@ def test_the_readme_has_every_parameter_with_its_default():
         if isinstance(default, bool):
             shown = str(default).lower()
         else:
-            shown = list(default) if isinstance(default, tuple) else default or "''"
+            shown = list(default) if isinstance(default, tuple) else "''" if default == '' else default
         assert rows.get(parameter.name) == f'`{shown}`', parameter.name

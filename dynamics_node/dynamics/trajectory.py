@@ -1,0 +1,192 @@
+"""Trajectories of points: the derivatives that are missing, by a spline."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import ArgumentError
+from ..kernels.spline import spline_slopes
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """
+    N points of a motion of n joints, complete.
+
+    Attributes
+    ----------
+    time : numpy.ndarray, shape (N,)
+        s.
+    positions, velocities, accelerations : numpy.ndarray, shape (N, n)
+        rad or m, per s, per s².
+    obtained : str
+        In words, what was not given and where it comes from; empty if all was given.
+
+    """
+
+    time: np.ndarray
+    positions: np.ndarray
+    velocities: np.ndarray
+    accelerations: np.ndarray
+    obtained: str
+
+
+def complete_trajectory(time, positions, velocities=None, accelerations=None):
+    """
+    Complete a trajectory by the velocities and accelerations that are missing.
+
+    What is given is kept as it is. A point without velocities (or accelerations) is a row of NaN.
+
+    - Velocities that are missing are the slopes of the cubic spline through the positions, which
+      has the velocities that are given. Nothing is assumed about an end without a velocity: the
+      two outermost pieces are one cubic there.
+    - Accelerations that are missing are the second derivatives of that spline, if no velocity is
+      given between the first and the last point. Otherwise they are the slopes of the cubic
+      spline through the velocities, which has the accelerations that are given: two derivatives
+      of rounded positions would be mostly rounding.
+    - One point: what is missing is zero, the robot rests. Two points: a line, or with velocities
+      a parabola or cubic. Three points: a parabola, or with velocities at the ends a cubic
+      spline.
+
+    Positions count on beyond a full turn: a step from 3.1 to -3.1 rad is a turn backwards.
+
+    Parameters
+    ----------
+    time : array_like, shape (N,)
+        s; strictly increasing if anything is missing.
+    positions : array_like, shape (N, n)
+        rad or m.
+    velocities, accelerations : array_like, shape (N, n), optional
+        rad/s or m/s, rad/s² or m/s².
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    ArgumentError
+        If there is no point, shapes do not fit, a number is not finite (points and joints are
+        counted from 0), or times do not increase where a spline is needed or are so close that
+        derivatives overflow.
+
+    References
+    ----------
+    docs/mathematics.md, equations (30) and (31).
+
+    """
+    time, positions = _points(time, positions)
+    velocities, has_velocity = _derivatives('velocities', velocities, positions.shape)
+    accelerations, has_acceleration = _derivatives('accelerations', accelerations,
+                                                   positions.shape)
+    obtained = ''
+    if not (has_velocity.all() and has_acceleration.all()):
+        if len(time) > 1:
+            _require_increasing(time)
+        with np.errstate(all='ignore'):  # what overflows is told below
+            obtained = _fill(time, positions, velocities, has_velocity, accelerations,
+                             has_acceleration)
+        _require_finite(velocities, accelerations)
+    for array in (time, positions, velocities, accelerations):
+        array.flags.writeable = False
+    return Trajectory(time, positions, velocities, accelerations, obtained)
+
+
+def _points(time, positions):
+    time, positions = _numbers('time', time), _numbers('positions', positions)
+    if time.ndim != 1 or len(time) == 0:
+        raise ArgumentError('time: expected shape (N,) with at least one point, '
+                            f'got {time.shape}')
+    if positions.ndim != 2 or len(positions) != len(time):
+        raise ArgumentError(f'positions: expected shape ({len(time)}, n), one row per time, '
+                            f'got {positions.shape}')
+    if not np.isfinite(time).all():
+        i = int(np.argmin(np.isfinite(time)))
+        raise ArgumentError(f'time: point {i}: expected a finite number, got {time[i]}')
+    _refuse('positions', positions, ~np.isfinite(positions), 'a finite number')
+    return time, positions
+
+
+def _derivatives(name, values, shape):
+    # The values, and at which points there are any.
+    if values is None:
+        return np.full(shape, np.nan), np.zeros(shape[0], dtype=bool)
+    values = _numbers(name, values)
+    if values.shape != shape:
+        raise ArgumentError(f'{name}: expected the shape of positions, {shape}, '
+                            f'got {values.shape}')
+    given = ~np.isnan(values).all(axis=1)
+    _refuse(name, values, given[:, None] & ~np.isfinite(values),
+            'a finite number, or NaN for all joints of a point where they are missing')
+    return values, given
+
+
+def _numbers(name, values):
+    try:
+        return np.array(values, dtype=float, order='C')
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f'{name}: expected numbers, as many for each point: '
+                            f'{error}') from error
+
+
+def _refuse(name, values, wrong, expected):
+    if wrong.any():
+        point, joint = np.argwhere(wrong)[0]
+        raise ArgumentError(f'{name}: point {point}, joint {joint}: expected {expected}, '
+                            f'got {values[point, joint]}')
+
+
+def _require_increasing(time):
+    late = np.flatnonzero(~(np.diff(time) > 0.0))
+    if len(late):
+        i = int(late[0]) + 1
+        raise ArgumentError(f'time: point {i}: expected more than {float(time[i - 1])} s, the '
+                            f'time of the point before, got {float(time[i])} s; or give the '
+                            'velocities and accelerations of all points')
+
+
+def _require_finite(velocities, accelerations):
+    finite = (np.isfinite(velocities) & np.isfinite(accelerations)).all(axis=1)
+    if not finite.all():
+        raise ArgumentError(f'time: point {int(np.argmin(finite))}: expected steps long enough '
+                            'for finite velocities and accelerations, got an overflow')
+
+
+def _fill(time, positions, velocities, has_velocity, accelerations, has_acceleration):
+    # Fill in what is missing, and say in words where it comes from.
+    count = len(time)
+    if count == 1:
+        velocities[~has_velocity] = 0.0
+        accelerations[~has_acceleration] = 0.0
+        return _words('velocities', has_velocity, 'zero, the only point is at rest',
+                      'accelerations', has_acceleration, 'zero, the only point is at rest')
+    spline_slopes(time, positions, has_velocity, velocities)
+    if has_velocity[1:-1].any():
+        spline_slopes(time, velocities, has_acceleration, accelerations)
+        source = 'the slopes of a cubic spline through the velocities'
+    else:
+        curvature = _second_derivatives(time, positions, velocities)
+        accelerations[~has_acceleration] = curvature[~has_acceleration]
+        source = 'the second derivatives of a cubic spline through the positions'
+    return _words('velocities', has_velocity,
+                  'the slopes of a cubic spline through the positions',
+                  'accelerations', has_acceleration, source)
+
+
+def _second_derivatives(time, values, slopes):
+    # (31) of the piece to the right of each point; the last point has only one to its left.
+    h = np.diff(time)[:, None]
+    secant = np.diff(values, axis=0) / h
+    begin = (6.0 * secant - 4.0 * slopes[:-1] - 2.0 * slopes[1:]) / h
+    end = (2.0 * slopes[-2] + 4.0 * slopes[-1] - 6.0 * secant[-1]) / h[-1]
+    return np.concatenate((begin, end[None]))
+
+
+def _words(*parts):
+    sentences = []
+    for name, given, source in zip(parts[::3], parts[1::3], parts[2::3], strict=True):
+        missing = int(np.count_nonzero(~given))
+        if missing:
+            where = '' if missing == len(given) else f' of {missing} of {len(given)} points'
+            sentences.append(f'{name}{where} were not given: {source}')
+    return '; '.join(sentences)

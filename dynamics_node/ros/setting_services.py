@@ -1,0 +1,109 @@
+"""The services that say what the robot carries and where the earth is."""
+
+import time
+
+from dynamics_interfaces.srv import SetGravity, SetPayload
+import numpy as np
+
+from .answering import Answering
+from .guard import guarded_service
+from ..errors import ArgumentError
+
+_TENSOR = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
+# Anywhere on the surface of the earth gravity is between these, m/s².
+_LEAST, _MOST = 9.76, 9.84
+
+
+class SettingServices(Answering):
+    """
+    Creates and answers ~/set_payload and ~/set_gravity.
+
+    They set parameters, so that what is in force can be read there, and is checked in one place.
+
+    """
+
+    def __init__(self, node, get_robot, parameters):
+        """Create the services of a node; see `Answering`."""
+        super().__init__(node, get_robot, parameters)
+        node.create_service(SetPayload, '~/set_payload', self.set_payload)
+        node.create_service(SetGravity, '~/set_gravity', self.set_gravity)
+
+    @guarded_service
+    def set_payload(self, request, response):
+        """Put a payload in place of the one before; answer the one in force."""
+        def fill():
+            robot, inertia = self.robot(), request.inertia
+            com = (inertia.com.x, inertia.com.y, inertia.com.z)
+            six = tuple(getattr(inertia, name) for name in _TENSOR)
+            link, mass = request.link, inertia.m
+            if mass == 0.0:
+                link, com, six = '', (0.0,) * 3, (0.0,) * 6
+            elif not link:
+                raise ArgumentError('link: expected the one that carries the payload, got none: '
+                                    f'one of {", ".join(robot.model.link_names)}')
+            self.parameters.set({'payload.link': link, 'payload.mass': mass, 'payload.com': com,
+                                 'payload.inertia': six})
+            over = robot.over_limits(self.parameters.values)
+            return (f'{mass:g} kg on {link}' if mass else 'nothing is carried') + (
+                f', but gravity torque is above its limit: {over}' if over else '')
+        return self._with_payload(self.answer(response, fill))
+
+    @guarded_service
+    def set_gravity(self, request, response):
+        """Take another direction of gravity; answer the one in force."""
+        def fill():
+            robot, frame = self.robot(), request.gravity.header.frame_id
+            vector = request.gravity.vector
+            gravity = np.array([vector.x, vector.y, vector.z])
+            if not np.isfinite(gravity).all():
+                raise ArgumentError(f'gravity: expected finite numbers, got {gravity.tolist()}')
+            if not gravity.any():
+                raise ArgumentError('gravity: expected a vector that points to the earth, got '
+                                    'zero; for none at all set the parameter gravity')
+            if frame not in ('', robot.model.tree.root):
+                gravity = self._turned(robot, frame, gravity)
+            self.parameters.set({'gravity': tuple(gravity.tolist())})
+            size = float(np.linalg.norm(gravity))
+            return f'gravity is {size:.6g} m/s^2 along this vector' + (
+                '' if _LEAST <= size <= _MOST else ', which is not that of the earth: its length '
+                'counts too')
+        return self._with_gravity(self.answer(response, fill))
+
+    def failed(self, response, message):
+        """Make a new response the answer to a request that failed: with what is in force."""
+        response = super().failed(response, message)
+        if isinstance(response, SetPayload.Response):
+            return self._with_payload(response)
+        return self._with_gravity(response)
+
+    def _turned(self, robot, frame, vector):
+        try:
+            robot.model.link_pose(robot.model.neutral_position, frame)
+        except ArgumentError as error:
+            raise ArgumentError(f'header.frame_id: {error}') from error
+        timeout = self.parameters['state_timeout']
+        if stale := robot.buffer.stale_joints(time.monotonic(), timeout):
+            raise ArgumentError(f'header.frame_id: where {frame} is cannot be said: no joint state '
+                                f'within {timeout:g} s for {", ".join(stale)}; publish '
+                                'joint_states, or give gravity in the frame of the root link')
+        return robot.model.link_pose(robot.buffer.position, frame)[:3, :3] @ vector
+
+    def _with_payload(self, response):
+        robot = self._get_robot()
+        payload = robot.model.payload if robot else None
+        if payload is not None:
+            response.link, response.inertia.m = payload.link, payload.mass
+            com = response.inertia.com
+            com.x, com.y, com.z = payload.com.tolist()
+            for name, value in zip(_TENSOR, payload.inertia[np.triu_indices(3)].tolist(),
+                                   strict=True):
+                setattr(response.inertia, name, value)
+        return response
+
+    def _with_gravity(self, response):
+        robot = self._get_robot()
+        if robot is not None:
+            stamped = response.gravity
+            stamped.header.frame_id = robot.model.tree.root
+            stamped.vector.x, stamped.vector.y, stamped.vector.z = robot.model.gravity.tolist()
+        return response

@@ -1,0 +1,115 @@
+"""The services about trajectories and about how much the robot can carry."""
+
+from dynamics_interfaces.srv import ComputeTrajectoryEffort, GetMaxPayload
+import numpy as np
+
+from .answering import Answering
+from .guard import guarded_service
+from .messages import to_field
+from .query import finite, Query
+from .trajectory_message import put_efforts, TrajectoryArrays
+from ..dynamics import complete_trajectory, over_limit
+
+
+class TrajectoryServices(Answering):
+    """Creates and answers ~/compute_trajectory_effort and ~/get_max_payload."""
+
+    def __init__(self, node, get_robot, parameters):
+        """Create the services of a node; see `Answering`."""
+        super().__init__(node, get_robot, parameters)
+        node.create_service(ComputeTrajectoryEffort, '~/compute_trajectory_effort',
+                            self.compute_trajectory_effort)
+        node.create_service(GetMaxPayload, '~/get_max_payload', self.get_max_payload)
+
+    @guarded_service
+    def compute_trajectory_effort(self, request, response):
+        """Answer the same trajectory with efforts, and where they are above their limits."""
+        def fill():
+            robot, trajectory = self.robot(), request.trajectory
+            motion = _Motion(robot, trajectory)
+            model, (q, qd, qdd) = robot.model, motion.states
+            efforts, notes = model.inverse_dynamics(q, qd, qdd), motion.notes
+            if request.without_gravity:
+                efforts = efforts - model.gravity_torque(q)
+                notes.append('without gravity')
+            if request.with_friction:
+                efforts = efforts + model.friction_torque(qd)
+                notes.append('with friction')
+            efforts = finite(efforts[:, motion.index])
+            limits = self._limits(robot)[motion.index]
+            over = over_limit(efforts, limits)
+            put_efforts(trajectory.points, efforts)
+            trajectory.joint_names = list(motion.names)
+            response.trajectory = trajectory
+            response.within_limits = not len(over.points)
+            response.points_over_limit = over.points.tolist()
+            response.joints_over_limit = [motion.names[i] for i in over.joints]
+            response.peak_effort = to_field(over.peak_effort)
+            response.effort_limits = to_field(limits)
+            if len(over.points):
+                notes.append(f'{len(over.points)} points above the effort limit of '
+                             + ', '.join(response.joints_over_limit))
+            return '; '.join(notes) or 'all velocities and accelerations were given'
+        return self.answer(response, fill)
+
+    @guarded_service
+    def get_max_payload(self, request, response):
+        """Answer the largest mass at a point of a link, and the joint that allows no more."""
+        def fill():
+            robot = self.robot()
+            link = request.link or robot.model.tip_link
+            point = (request.point.x, request.point.y, request.point.z)
+            if request.trajectory.points:
+                motion = _Motion(robot, request.trajectory)
+                names, index, notes = motion.names, motion.index, motion.notes
+                q, qd, qdd = motion.states
+                notes.insert(0, 'over the trajectory')
+            else:
+                query = Query(robot, request, self.parameters['state_timeout'])
+                names, index, notes = query.names, query.index, [f'at rest {query.message}']
+                q = query.q[None]
+                qd = qdd = np.zeros_like(q)
+            limits = self._limits(robot)
+            most = robot.model.max_payload(q, link, point, qd=qd, qdd=qdd, effort_limits=limits)
+            mass, joint, (place,) = most.least()
+            finite(np.nan_to_num(mass, posinf=0.0))
+            carried = robot.model.with_payload(link, mass if np.isfinite(mass) else 0.0, point)
+            effort = carried.inverse_dynamics(q[place], qd[place], qdd[place])
+            response.joint_names, response.link = list(names), link
+            response.position = to_field(q[place, index])
+            response.mass = mass
+            response.limiting_joint = robot.model.joint_names[joint] if joint >= 0 else ''
+            response.limiting_point = place if request.trajectory.points else -1
+            response.effort = to_field(finite(effort[index]))
+            response.effort_limits = to_field(limits[index])
+            return '; '.join([_in_words(mass, response.limiting_joint, link), *notes])
+        return self.answer(response, fill)
+
+    def _limits(self, robot):
+        # Of all joints: those that are not chosen have their limits too.
+        limits = robot.model.effort_limits.copy()
+        limits[robot.selection.index] = robot.effort_limits(self.parameters['effort_limits'])
+        return limits
+
+
+def _in_words(mass, joint, link):
+    if not joint:
+        return f'no effort limit is in the way of a mass on {link}'
+    if mass == 0.0:
+        return f'{joint} is at or above its effort limit without any payload on {link}'
+    return f'{mass:.6g} kg on {link}: then {joint} is at its effort limit'
+
+
+class _Motion:
+    # A trajectory, with all derivatives, of all joints of the robot.
+
+    def __init__(self, robot, trajectory):
+        arrays = TrajectoryArrays(robot, trajectory)
+        motion = complete_trajectory(arrays.time, arrays.positions, arrays.velocities,
+                                     arrays.accelerations)
+        self.names, self.index = arrays.names, arrays.index
+        rest = np.zeros(len(robot.model.joint_names))
+        self.states = (arrays.whole(motion.positions, robot.buffer.position),
+                       arrays.whole(motion.velocities, rest),
+                       arrays.whole(motion.accelerations, rest))
+        self.notes = [motion.obtained] if motion.obtained else []
