@@ -33,8 +33,8 @@ def test_what_can_be_torque_is_believed(effort):
 def test_what_can_hardly_be_torque_is_doubted_with_both_numbers(effort):
     unit = EffortAtRest(NAMES, LIMITS)
     assert rest(unit, effort)
-    assert unit.doubt == (f'shoulder reports {effort[0] + 0.0:.4g} at rest, where the model says that '
-                          '-40 holds it')
+    assert unit.doubt == (f'shoulder reports {effort[0] + 0.0:.4g} at rest, where the model says '
+                          'that -40 holds it')
 
 
 def test_the_doubt_goes_when_torque_comes():

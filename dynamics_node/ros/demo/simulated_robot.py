@@ -15,7 +15,6 @@ from typing import Any
 
 import rclpy
 from rclpy.clock import Clock, ClockType
-from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -173,7 +172,8 @@ class SimulatedRobot(Node):
             if after - before < AT_ONCE:
                 break
         _, now, clock = min(readings)
-        return clock - Duration(seconds=self._pacer.behind(now))
+        behind = round(self._pacer.behind(now) * 1e9)
+        return Time(nanoseconds=clock.nanoseconds - behind, clock_type=clock.clock_type)
 
     def _on_command(self, message: Float64MultiArray) -> None:
         """Take a command and hold it until the next one."""
