@@ -71,14 +71,13 @@ class JointStateReader:
         if data[FRAME:self._end] == self._names and data[:ORIGIN] == _REPRESENTATION:
             position, at = _doubles(data, self._end)
             velocity, at = _doubles(data, at)
-            if self._with_effort:
-                effort, at = _doubles(data, at)
             if at <= len(data):
                 message, stamp = self._message, self._message.header.stamp
                 stamp.sec, stamp.nanosec = _STAMP.unpack_from(data, ORIGIN)
                 message.position, message.velocity = position, velocity
                 if self._with_effort:
-                    message.effort = effort
+                    effort, end = _doubles(data, at)
+                    message.effort = effort if end <= len(data) else array('d')
                 return message
         return self._learn(data)
 

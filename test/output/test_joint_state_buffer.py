@@ -1,5 +1,6 @@
 """The buffer: any order, parts, extras; and what it drops."""
 
+import contextlib
 import math
 
 from dynamics_node.output import (
@@ -297,6 +298,21 @@ def test_wrong_efforts_are_unknown_and_spoil_no_state(efforts):
     assert unit.rejected == {} and unit.accepted == 2 and unit.age(0.1) == 0.0
     np.testing.assert_array_equal(unit.position, [1, 2, 3])
     np.testing.assert_array_equal(unit.velocity, [4, 5, 6])
+
+
+@given(st.lists(st.floats(), max_size=5), st.permutations(['a', 'b', 'c', 'x']),
+       st.lists(st.floats(), min_size=4, max_size=4))
+def test_whatever_the_efforts_are_the_state_is_the_same(efforts, names, positions):
+    units = [buffer(needed=('a', 'b')), buffer(needed=('a', 'b'))]
+    for unit, given_efforts in zip(units, (None, efforts), strict=True):
+        with contextlib.suppress(RejectedStateError):
+            unit.update(1.0, names, positions, (), efforts=given_efforts)
+        assert not np.isinf(unit.effort).any()
+    with_none, with_some = units
+    assert with_none.rejected == with_some.rejected
+    assert with_none.accepted == with_some.accepted
+    assert with_none.age(2.0) == with_some.age(2.0)
+    assert with_none.position.tobytes() == with_some.position.tobytes()
 
 
 def test_one_effort_that_is_not_known_leaves_the_others():
