@@ -18,12 +18,13 @@ import sys
 import time
 
 from dynamics_interfaces.msg import OutputState
-from dynamics_interfaces.srv import GetMassMatrix
+from dynamics_interfaces.srv import ComputeTrajectoryEffort, GetMassMatrix
 from dynamics_node import RobotModel
 import numpy as np
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from .node_processes import node, relay, ROOT
 from .node_stream import Stream
@@ -37,6 +38,9 @@ SLICE = 0.4
 BURSTS = 15
 CALLS = 25
 STARTS = 4
+# Points of a trajectory, and calls with it.
+POINTS = 10_000
+TRAJECTORIES = 5
 PATIENCE = 30.0
 
 
@@ -111,7 +115,8 @@ class Driver:
         rclpy.try_shutdown()
 
 
-def measure_all(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS, arguments=()):
+def measure_all(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS,
+                trajectories=TRAJECTORIES, arguments=()):
     """
     Measure everything.
 
@@ -119,7 +124,7 @@ def measure_all(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS, argume
     ----------
     rates : sequence of float
         Rates of the joint states, Hz.
-    slices, starts, bursts : int
+    slices, starts, bursts, trajectories : int
         Repetitions; 0 leaves a part out.
     arguments : sequence of str
         More of the node's command line: options to compare.
@@ -141,6 +146,7 @@ def measure_all(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS, argume
     try:
         return (measure_streams(driver, rates, slices, arguments)
                 + measure_services(driver, bursts, arguments)
+                + measure_trajectories(driver, trajectories, arguments)
                 + measure_starts(driver, starts, arguments))
     finally:
         driver.close()
@@ -322,6 +328,48 @@ def _burst(driver, client, request):
         driver.executor.spin_until_future_complete(future)
         times.append(time.perf_counter() - begin)
     return times
+
+
+def measure_trajectories(driver, rounds, arguments=()):
+    """Return the row about a long trajectory, against a service that only returns it."""
+    if not rounds:
+        return []
+    robot = RobotModel.from_urdf(ROBOT)
+    request = ComputeTrajectoryEffort.Request(trajectory=_trajectory(robot))
+    with node(ROBOT, *arguments) as ours, relay('trajectory') as bare, ExitStack() as stack:
+        clients = [driver.node.create_client(ComputeTrajectoryEffort, name) for name in (
+            '/ours/dynamics_node/compute_trajectory_effort', '/relay/relay/trajectory')]
+        for client in clients:
+            stack.callback(driver.node.destroy_client, client)
+            driver.until(client.service_is_ready, processes=[ours, bare])
+        times: list[list] = [[], []]
+        for index in range(rounds + 1):
+            # Both orders, so that what comes first has no advantage.
+            for which in ((0, 1) if index % 2 else (1, 0)):
+                begin = time.perf_counter()
+                answer = driver.call(clients[which], request)
+                times[which].append(time.perf_counter() - begin)
+                if not answer.success:
+                    raise RuntimeError(f'expected success, got: {answer.message}')
+    # The first call is for the caches.
+    a, b = (part[1:] for part in times)
+    ratios = [x / y for x, y in zip(a, b, strict=True)]
+    return [Row(f'trajectory of {POINTS:,} points'.replace(',', ' '), None, 'ms',
+                statistics.median(a) * 1e3, statistics.median(b) * 1e3,
+                statistics.median(ratios), _quartiles(ratios))]
+
+
+def _trajectory(robot):
+    # All joints swing; velocities and accelerations are left to the node.
+    n = len(robot.joint_names)
+    angle = np.linspace(0.0, 20.0, POINTS)[:, None] + np.arange(n)
+    trajectory = JointTrajectory(joint_names=robot.joint_names)
+    for i, row in enumerate(0.02 * np.sin(angle)):
+        point = JointTrajectoryPoint(positions=row.tolist())
+        point.time_from_start.sec, thousandths = divmod(i, 1000)
+        point.time_from_start.nanosec = thousandths * 1_000_000
+        trajectory.points.append(point)
+    return trajectory
 
 
 def measure_starts(driver, starts, arguments=()):

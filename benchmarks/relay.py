@@ -1,12 +1,13 @@
 """
 The bare nodes that the node is compared with: plain rclpy, as a person would write them first.
 
-    python -m benchmarks.relay states | trigger | torque [--ros-args ...]
+    python -m benchmarks.relay states | trigger | trajectory | torque [--ros-args ...]
 
 """
 
 import sys
 
+from dynamics_interfaces.srv import ComputeTrajectoryEffort
 import rclpy
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
@@ -48,6 +49,21 @@ class TriggerServer(Node):
         return response
 
 
+class TrajectoryServer(Node):
+    """Answers with the trajectory that it was sent, and that is all."""
+
+    def __init__(self):
+        """Create one service."""
+        super().__init__('relay')
+        self.create_service(ComputeTrajectoryEffort, '~/trajectory', self.answer)
+
+    def answer(self, request, response):
+        """Send what came."""
+        response.success = True
+        response.trajectory = request.trajectory
+        return response
+
+
 class TorqueSource(Node):
     """Publishes a torque as soon as it runs: what starting a node costs at the least."""
 
@@ -64,7 +80,8 @@ class TorqueSource(Node):
 
 def main():
     """Run the node that the first argument names until SIGINT or SIGTERM."""
-    kind = {'states': StatesRelay, 'trigger': TriggerServer, 'torque': TorqueSource}[sys.argv[1]]
+    kind = {'states': StatesRelay, 'trigger': TriggerServer, 'trajectory': TrajectoryServer,
+            'torque': TorqueSource}[sys.argv[1]]
     rclpy.init(args=sys.argv)
     try:
         rclpy.spin(kind())

@@ -1,5 +1,5 @@
 """
-Sections that other files measure: the node.
+Sections that other files measure: trajectories, the node.
 
 Such a file is `benchmarks/NAME.py`. Its docstring becomes the text of the section, and its
 `measure()` returns a list of rows, each a dict of column title → text or number. If it raises,
@@ -12,7 +12,8 @@ from importlib import import_module, util
 import inspect
 
 # Key → title, file.
-PLACES = {'node': ('The node', 'node_latency')}
+PLACES = {'trajectory': ('Trajectories', 'trajectory_effort'),
+          'node': ('The node', 'node_latency')}
 
 
 @dataclass

@@ -20,7 +20,7 @@ STREET = {
     'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'output'},
 }
 # llvmlite is numba's compiler and comes with it.
-LIBRARY = {'numpy', 'numba', 'llvmlite', 'yourdfpy'}
+LIBRARY = {'numpy', 'numba', 'llvmlite', 'yourdfpy', 'scipy'}
 SOURCES = sorted(PACKAGE.rglob('*.py'))
 
 

@@ -99,7 +99,7 @@ def max_payload(model, q, link, point, qd, qdd, effort_limits):
     per_kg = _per_kilogram(model, body, position,
                            [np.broadcast_to(np.asarray(value, dtype=float), effort.shape)
                             for value in (q, qd, qdd)])
-    with np.errstate(invalid='ignore', divide='ignore'):
+    with np.errstate(all='ignore'):  # no force or no limit: infinite, or not used
         mass = np.where(per_kg == 0.0, np.inf,
                         (limits - np.sign(per_kg) * effort) / np.abs(per_kg))
         excess = np.where(np.abs(effort) > limits, np.abs(effort) / limits, 0.0)

@@ -40,7 +40,7 @@ class MomentumObserver:
 
     References
     ----------
-    docs/mathematics.md, equations (30) and (31).
+    docs/mathematics.md, equations (33) and (34).
 
     """
 
@@ -113,7 +113,7 @@ class MomentumObserver:
 
         References
         ----------
-        docs/mathematics.md, equations (30) and (31).
+        docs/mathematics.md, equations (33) and (34).
 
         """
         q, qd, effort = self._checked(q, qd, effort)
@@ -128,7 +128,7 @@ class MomentumObserver:
             return np.full(len(self._index), math.nan)
         dt = time - self._time
         if 0.0 < dt <= self._longest_step:
-            external = (momentum - self._momentum) / dt - 0.5 * (rate + self._rate)      # (31)
+            external = (momentum - self._momentum) / dt - 0.5 * (rate + self._rate)      # (34)
             # What a filter of the gain K makes of a constant input, whatever K dt is.
             estimate = self.estimate - math.expm1(-self.gain * dt) * (external - self.estimate)
             estimate.flags.writeable = False
@@ -155,12 +155,12 @@ class MomentumObserver:
         return q, np.where(self._is_other & np.isnan(qd), 0.0, qd), effort
 
     def _balance(self, q, qd, effort):
-        # Rows of the whole robot, not its sub-blocks: (30) holds row by row, also where joints
+        # Rows of the whole robot, not its sub-blocks: (33) holds row by row, also where joints
         # that were not chosen move.
         terms = self._robot.dynamics(q, qd)
         rows = self._index
         momentum = terms.mass_matrix[rows] @ qd
-        known = qd @ terms.coriolis_matrix[:, rows] - terms.gravity_torque[rows]         # (30)
+        known = qd @ terms.coriolis_matrix[:, rows] - terms.gravity_torque[rows]         # (33)
         return momentum, effort + known - self._robot.friction_torque(qd)[rows]
 
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .spline import spline_slopes
 from ..errors import ArgumentError
-from ..kernels.spline import spline_slopes
 
 
 @dataclass(frozen=True)

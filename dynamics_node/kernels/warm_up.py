@@ -9,7 +9,6 @@ import numpy as np
 
 from . import closed_form, specialised
 from .packing import WIDTH
-from .spline import spline_slopes
 
 
 def warm_up():
@@ -28,7 +27,6 @@ def warm_up():
     closed_form.body_pose(structure, numbers, q, 0, np.empty((1, 3, 4)))
     specialised.are_ordinary('dynamics', [q, q])
     closed_form.forward_dynamics(structure, numbers, q, q, q, vector, np.empty(1, dtype=bool))
-    spline_slopes(np.arange(2.0), np.zeros((2, 1)), np.zeros(2, dtype=bool), np.empty((2, 1)))
 
 
 if __name__ == '__main__':

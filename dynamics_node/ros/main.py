@@ -89,7 +89,7 @@ def _spare_the_garbage_collector():
 def _load_the_rest():
     # What only some services need. Imported by the first of them, it would hold up the control
     # loop for half a second, and at the start everybody.
-    import scipy.interpolate  # noqa: F401
+    import scipy.interpolate
     import scipy.spatial.transform  # noqa: F401
     gc.freeze()
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..dynamics.friction import SMOOTHING_VELOCITY
+from ..dynamics.payload import check_link
 
 # ixx ixy ixz iyy iyz izz, as in geometry_msgs/Inertia, by row and column of the tensor.
 _TENSOR = ([0, 1, 2], [1, 3, 4], [2, 4, 5])
@@ -61,6 +62,8 @@ def configured(robot, values, before=None):
     if has_changed('friction.viscous', 'friction.coulomb', 'friction.smoothing_velocity'):
         model = model.with_friction(*_friction(robot, values))
     if has_changed('payload.link', 'payload.mass', 'payload.com', 'payload.inertia'):
+        if values['payload.link']:
+            check_link(model.tree.links, values['payload.link'])
         model = model.with_payload(values['payload.link'], values['payload.mass'],
                                    values['payload.com'], tensor(values['payload.inertia']))
     return model

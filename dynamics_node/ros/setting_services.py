@@ -83,8 +83,8 @@ class SettingServices(Answering):
             raise ArgumentError(f'header.frame_id: {error}') from error
         timeout = self.parameters['state_timeout']
         if stale := robot.buffer.stale_joints(time.monotonic(), timeout):
-            raise ArgumentError(f'header.frame_id: where {frame} is cannot be said: no joint state '
-                                f'within {timeout:g} s for {", ".join(stale)}; publish '
+            raise ArgumentError(f'header.frame_id: how {frame} is turned is not known: no joint '
+                                f'state within {timeout:g} s for {", ".join(stale)}; publish '
                                 'joint_states, or give gravity in the frame of the root link')
         return robot.model.link_pose(robot.buffer.position, frame)[:3, :3] @ vector
 

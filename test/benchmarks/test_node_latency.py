@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 # In a process of its own: it joins ROS by itself.
 CODE = """
 from benchmarks.node_latency import measure_all, table
-rows = measure_all(rates=(50,), slices=2, starts=1, bursts=1)
+rows = measure_all(rates=(50,), slices=2, starts=1, bursts=1, trajectories=1)
 for row in rows:
     print(row.name, row.ours, row.relay, row.ratio, sep=';')
 assert len(table(rows).splitlines()) == len(rows) + 2
@@ -36,6 +36,7 @@ def test_every_row_is_measured_and_states_are_answered():
     assert list(rows) == [
         'latency p50', 'latency p90', 'latency p99', 'CPU per command', 'states answered',
         'get_mass_matrix {} p50', 'get_mass_matrix with position p50',
+        'trajectory of 10 000 points',
         'start to first torque, beyond rclpy']
     assert all(math.isfinite(value) for values in rows.values() for value in values)
     ours, relay, _ = rows['states answered']

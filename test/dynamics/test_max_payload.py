@@ -243,7 +243,9 @@ def chain_formula(oracle, model, q, link, gravity):
 
 
 def test_upright_it_is_what_solvers_for_chains_say_and_tilted_it_is_not():
-    # MoveIt's dynamics_solver::getMaxPayload, for an arm that stands on a level floor.
+    # As MoveIt's dynamics_solver::getMaxPayload for an arm on a level floor. (There gravity has to
+    # be handed over pointing up: what lifts the load and what pulls at the arm would otherwise
+    # have opposite signs in KDL.)
     text = ARM7.read_text()
     rng = np.random.default_rng(8)
     for gravity, same in (((0.0, 0.0, -G), True), ((G, 0.0, 0.0), False)):
@@ -322,3 +324,9 @@ def test_wrong_input_is_answered_with_what_was_expected_and_what_came(pendulum, 
                                                                       text):
     with pytest.raises(ArgumentError, match=text):
         pendulum.max_payload(*arguments, **options)
+
+
+@pytest.mark.parametrize('gravity', [0.0, 1e-310])
+def test_where_nothing_has_weight_any_mass_will_do(pendulum, gravity):
+    result = pendulum.with_gravity((0.0, 0.0, -gravity)).max_payload([0.3], 'rod')
+    assert (result.mass, result.joint) == (INF, -1)

@@ -25,3 +25,21 @@ def start():
             return process
 
         yield start
+
+
+@pytest.fixture(scope='module')
+def shared():
+    """Return a client of a node with arm7, for all tests of a file that only ask."""
+    from support.domains import claim
+    from support.processes import Client, NodeProcess
+    from support.robots import ARM7
+    with contextlib.ExitStack() as stack:
+        # In a domain of its own: other tests here start nodes of the same name.
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv('ROS_DOMAIN_ID', str(claim()))
+            # A busy machine does not trip it while states come.
+            node = NodeProcess(robot_description_file=ARM7, state_timeout=1.0)
+            stack.callback(node.close)
+            client = Client()
+        stack.callback(client.close)
+        yield client

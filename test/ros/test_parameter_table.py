@@ -86,5 +86,6 @@ def test_the_readme_has_every_parameter_with_its_default():
         if isinstance(default, bool):
             shown = str(default).lower()
         else:
-            shown = list(default) if isinstance(default, tuple) else "''" if default == '' else default
+            shown = list(default) if isinstance(default, tuple) else default
+            shown = "''" if shown == '' else shown
         assert rows.get(parameter.name) == f'`{shown}`', parameter.name

@@ -1,41 +1,30 @@
 """The services over DDS: given and measured states, orders, and what they refuse."""
 
-import contextlib
-
 from dynamics_interfaces.srv import (
+    ForwardDynamics,
     GetCoriolisMatrix,
     GetDynamics,
     GetGravityTorque,
+    GetJacobian,
     GetMassMatrix,
+    InverseDynamics,
 )
 from dynamics_node import RobotModel
+from geometry_msgs.msg import Point
 import numpy as np
 import pytest
-from support.domains import claim
-from support.processes import Client, NodeProcess
+from scipy.spatial.transform import Rotation
+from support.pinocchio_oracle import PinocchioOracle
 from support.robots import ARM7
 
 ARM = RobotModel.from_urdf(ARM7)
 N = len(ARM.joint_names)
 KINDS = {'get_mass_matrix': GetMassMatrix, 'get_coriolis_matrix': GetCoriolisMatrix,
-         'get_gravity_torque': GetGravityTorque, 'get_dynamics': GetDynamics}
+         'get_gravity_torque': GetGravityTorque, 'get_dynamics': GetDynamics,
+         'inverse_dynamics': InverseDynamics, 'forward_dynamics': ForwardDynamics,
+         'get_jacobian': GetJacobian}
 Q = np.clip(np.linspace(0.8, -0.9, N), *ARM.position_limits.T)
 QD = np.linspace(-1.0, 1.5, N)
-
-
-@pytest.fixture(scope='module')
-def shared():
-    """Return a client of a node with arm7, for all tests that only ask."""
-    with contextlib.ExitStack() as stack:
-        # In a domain of its own: other tests here start nodes of the same name.
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setenv('ROS_DOMAIN_ID', str(claim()))
-            # A busy machine does not trip it while states come.
-            node = NodeProcess(robot_description_file=ARM7, state_timeout=1.0)
-            stack.callback(node.close)
-            client = Client()
-        stack.callback(client.close)
-        yield client
 
 
 def assert_rounded(actual, expected):
@@ -137,6 +126,91 @@ def test_refused_requests_say_why_and_answer_empty_arrays(shared):
     answer = shared.call(GetCoriolisMatrix, '/dynamics_node/get_coriolis_matrix',
                          GetCoriolisMatrix.Request(position=Q.tolist(), velocity=[np.inf] * N))
     assert 'velocity: expected finite values' in answer.message
+
+
+def test_inverse_and_forward_dynamics_against_pinocchio(shared):
+    judge, order = PinocchioOracle(ARM7.read_text()), np.random.default_rng(7).permutation(N)
+    names, qdd = [ARM.joint_names[i] for i in order], np.linspace(2.0, -3.0, N)
+    tau = judge.inverse_dynamics(ARM.joint_names, Q, QD, qdd)
+    fields = {'joint_names': names, 'position': Q[order].tolist(), 'velocity': QD[order].tolist()}
+    answer = shared.call(InverseDynamics, '/dynamics_node/inverse_dynamics',
+                         InverseDynamics.Request(**fields, acceleration=qdd[order].tolist()))
+    assert answer.success, answer.message
+    assert answer.joint_names == names
+    np.testing.assert_array_equal(answer.acceleration, qdd[order])
+    np.testing.assert_allclose(answer.effort, tau[order], rtol=0, atol=1e-11 * np.abs(tau).max())
+    answer = shared.call(ForwardDynamics, '/dynamics_node/forward_dynamics',
+                         ForwardDynamics.Request(**fields, effort=tau[order].tolist()))
+    assert answer.success, answer.message
+    np.testing.assert_array_equal(answer.effort, tau[order])
+    np.testing.assert_allclose(answer.acceleration, qdd[order], rtol=0, atol=1e-9)
+
+
+def test_what_is_left_out_is_zero_and_the_flags_do_what_they_say(shared):
+    def effort(**fields):
+        answer = shared.call(InverseDynamics, '/dynamics_node/inverse_dynamics',
+                             InverseDynamics.Request(position=Q.tolist(), **fields))
+        assert answer.success, answer.message
+        return np.array(answer.effort), answer.message
+
+    assert_rounded(effort()[0], ARM.gravity_torque(Q))
+    assert effort()[1] == 'at the given position, velocity zero, acceleration zero'
+    moving, message = effort(velocity=QD.tolist(), without_gravity=True, with_friction=True)
+    expected = ARM.coriolis_matrix(Q, QD) @ QD + ARM.friction_torque(QD)
+    assert ARM.friction_torque(QD).any()
+    assert_rounded(moving, expected)
+    assert message.endswith('without gravity, with friction')
+    answer = shared.call(ForwardDynamics, '/dynamics_node/forward_dynamics',
+                         ForwardDynamics.Request(position=Q.tolist(), velocity=QD.tolist(),
+                                                 with_friction=True))
+    expected = ARM.forward_dynamics(Q, QD, -ARM.friction_torque(QD))
+    np.testing.assert_allclose(answer.acceleration, expected, rtol=1e-12)
+
+
+def test_the_jacobian_of_a_point_of_a_link(shared):
+    order = np.random.default_rng(8).permutation(N)
+    answer = shared.call(GetJacobian, '/dynamics_node/get_jacobian', GetJacobian.Request(
+        joint_names=[ARM.joint_names[i] for i in order], position=Q[order].tolist(),
+        link='tool_center', point=Point(x=0.1, y=0.2, z=0.3)))
+    assert answer.success, answer.message
+    assert (answer.link, answer.frame_id) == ('tool_center', 'base')
+    expected = ARM.jacobian(Q, 'tool_center', (0.1, 0.2, 0.3))
+    assert_rounded(np.reshape(answer.jacobian, (6, N)), expected[:, order])
+    pose = ARM.link_pose(Q, 'tool_center')
+    place, turn = answer.pose.position, answer.pose.orientation
+    assert [place.x, place.y, place.z] == pytest.approx(
+        (pose @ [0.1, 0.2, 0.3, 1.0])[:3], abs=1e-14)
+    rotation = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).as_matrix()
+    assert rotation == pytest.approx(pose[:3, :3], abs=1e-14)
+
+    answer = shared.call(GetJacobian, '/dynamics_node/get_jacobian',
+                         GetJacobian.Request(position=Q.tolist()))
+    assert answer.link == ARM.tip_link == 'right_finger'
+    assert 'link right_finger' in answer.message
+    answer = shared.call(GetJacobian, '/dynamics_node/get_jacobian',
+                         GetJacobian.Request(position=Q.tolist(), link='nose'))
+    assert not answer.success
+    assert 'link: expected one of base, ' in answer.message
+    assert len(answer.jacobian) == 0
+
+
+def test_joints_that_were_not_chosen_are_held(client, start):
+    chosen = [ARM.joint_names[i] for i in (3, 1, 5)]
+    start(robot_description_file=ARM7, joints=f'[{", ".join(chosen)}]')
+    index, q = np.array([3, 1, 5]), ARM.neutral_position.copy()
+    q[index] = Q[index]
+    answer = client.call(ForwardDynamics, '/dynamics_node/forward_dynamics',
+                         ForwardDynamics.Request(position=Q[index].tolist()))
+    assert answer.joint_names == chosen
+    D, G = ARM.mass_matrix(q)[np.ix_(index, index)], ARM.gravity_torque(q)[index]
+    np.testing.assert_allclose(answer.acceleration, np.linalg.solve(D, -G), rtol=1e-12)
+    answer = client.call(InverseDynamics, '/dynamics_node/inverse_dynamics',
+                         InverseDynamics.Request(position=Q[index].tolist(),
+                                                 acceleration=list(answer.acceleration)))
+    assert np.asarray(answer.effort) == pytest.approx(0.0, abs=1e-12)
+    answer = client.call(GetJacobian, '/dynamics_node/get_jacobian',
+                         GetJacobian.Request(position=Q[index].tolist(), link='hand'))
+    assert_rounded(np.reshape(answer.jacobian, (6, 3)), ARM.jacobian(q, 'hand')[:, index])
 
 
 def test_without_a_robot_the_answer_says_what_to_do(client, start):

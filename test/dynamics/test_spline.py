@@ -1,6 +1,6 @@
-"""Slopes of the spline: against scipy's, which solves its own equations for them."""
+"""Slopes of the spline: polynomials, scipy's own, and points whose slopes are known."""
 
-from dynamics_node.kernels.spline import spline_slopes
+from dynamics_node.dynamics.spline import spline_slopes
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
@@ -14,7 +14,7 @@ def points(seed, count, columns=3):
 
 
 def ours(time, values, slopes, *given):
-    """Return the slopes of the kernel where some are given."""
+    """Return the slopes where some are given."""
     mask = np.zeros(len(time), dtype=bool)
     mask[list(given)] = True
     result = np.where(mask[:, None], slopes, np.nan)
@@ -88,15 +88,6 @@ def test_steps_of_very_different_lengths_keep_their_digits():
     time = np.cumsum([0.0, 1e-3, 1.0, 1e-4, 1e-4, 2.0, 1e-3, 1e-3])
     values, slopes = time[:, None] ** 3, 3.0 * time[:, None] ** 2
     np.testing.assert_allclose(ours(time, values, slopes), slopes, rtol=1e-8, atol=1e-8)
-
-
-def test_python_computes_the_same_without_a_compiler():
-    time, values, slopes = points(3, 12)
-    given = np.zeros(12, dtype=bool)
-    given[[0, 5]] = True
-    expected = ours(time, values, slopes, 0, 5)
-    spline_slopes.py_func(time, values, given, slopes)
-    np.testing.assert_allclose(slopes, expected, rtol=1e-13, atol=1e-13)
 
 
 def test_no_joints_are_no_joints():

@@ -1,0 +1,210 @@
+"""~/compute_trajectory_effort and ~/get_max_payload over DDS, against Pinocchio and MuJoCo."""
+
+from dynamics_interfaces.srv import ComputeTrajectoryEffort, GetMaxPayload
+from dynamics_node import RobotModel
+from geometry_msgs.msg import Point
+import numpy as np
+import pytest
+from support.carried import with_payload_link
+from support.mujoco_oracle import MujocoOracle
+from support.pinocchio_oracle import PinocchioOracle
+from support.robots import ARM7
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+ARM = RobotModel.from_urdf(ARM7)
+N = len(ARM.joint_names)
+PHASE = np.arange(N) * 0.7
+
+
+def motion(time):
+    """Return positions, velocities and accelerations of a swing, shape (len(time), N) each."""
+    angle = 2.0 * time[:, None] + PHASE
+    return 0.3 * np.sin(angle), 0.6 * np.cos(angle), -1.2 * np.sin(angle)
+
+
+def message(time, positions, velocities=None, accelerations=None, names=ARM.joint_names):
+    """Return a JointTrajectory."""
+    trajectory = JointTrajectory(joint_names=names)
+    for i, t in enumerate(time):
+        point = JointTrajectoryPoint(positions=positions[i].tolist())
+        if velocities is not None:
+            point.velocities = velocities[i].tolist()
+        if accelerations is not None:
+            point.accelerations = accelerations[i].tolist()
+        point.time_from_start.sec, rest = divmod(round(t * 1e9), 1_000_000_000)
+        point.time_from_start.nanosec = rest
+        trajectory.points.append(point)
+    return trajectory
+
+
+def ask(client, trajectory, **flags):
+    """Call ~/compute_trajectory_effort."""
+    return client.call(ComputeTrajectoryEffort, '/dynamics_node/compute_trajectory_effort',
+                       ComputeTrajectoryEffort.Request(trajectory=trajectory, **flags))
+
+
+def efforts(answer):
+    """Return the efforts of an answer, shape (points, joints)."""
+    assert answer.success, answer.message
+    return np.array([point.effort for point in answer.trajectory.points])
+
+
+def test_every_point_gets_its_effort_and_stays_what_it_was(shared):
+    time = np.linspace(0.0, 2.0, 21)
+    q, qd, qdd = motion(time)
+    order = np.random.default_rng(1).permutation(N)
+    names = [ARM.joint_names[i] for i in order]
+    sent = message(time, q[:, order], qd[:, order], qdd[:, order], names)
+    answer = ask(shared, sent)
+    judge = MujocoOracle(ARM7.read_text())
+    expected = np.array([judge.inverse_dynamics(ARM.joint_names, *state)
+                         for state in zip(q, qd, qdd, strict=True)])[:, order]
+    np.testing.assert_allclose(efforts(answer), expected, rtol=0,
+                               atol=1e-11 * np.abs(expected).max())
+    assert answer.message == 'all velocities and accelerations were given'
+    assert answer.trajectory.joint_names == names
+    for before, after in zip(sent.points, answer.trajectory.points, strict=True):
+        after.effort = before.effort
+        assert after == before
+    assert answer.within_limits
+    np.testing.assert_allclose(answer.peak_effort, np.abs(expected).max(axis=0), rtol=1e-10)
+    np.testing.assert_array_equal(answer.effort_limits, ARM.effort_limits[order])
+
+
+def test_missing_derivatives_are_those_of_a_spline_and_it_says_so(shared):
+    time = np.linspace(0.0, 2.0, 201)
+    q, qd, qdd = motion(time)
+    exact = efforts(ask(shared, message(time, q, qd, qdd)))
+    without = ask(shared, message(time, q))
+    assert 'velocities were not given' in without.message
+    assert 'accelerations were not given' in without.message
+    assert 'spline' in without.message
+    assert efforts(without) == pytest.approx(exact, abs=0.02 * np.abs(exact).max())
+    half = ask(shared, message(time, q, qd))
+    assert 'velocities were' not in half.message
+    assert efforts(half) == pytest.approx(exact, abs=1e-4 * np.abs(exact).max())
+
+
+def test_gravity_and_friction_are_switched_by_the_request(shared):
+    time = np.linspace(0.0, 1.0, 5)
+    q, qd, qdd = motion(time)
+    trajectory = message(time, q, qd, qdd)
+    difference = efforts(ask(shared, trajectory)) - efforts(ask(shared, trajectory,
+                                                                without_gravity=True))
+    assert difference == pytest.approx(ARM.gravity_torque(q), abs=1e-11)
+    answer = ask(shared, trajectory, with_friction=True)
+    assert answer.message == 'with friction'
+    difference = efforts(answer) - efforts(ask(shared, trajectory))
+    assert difference == pytest.approx(ARM.friction_torque(qd), abs=1e-11)
+
+
+def test_points_and_joints_above_their_limit_are_named(shared):
+    time = np.linspace(0.0, 1.0, 4)
+    q, qd, qdd = np.zeros((3, 4, N))
+    qdd[2, 1] = 500.0
+    answer = ask(shared, message(time, q, qd, qdd))
+    tau = ARM.inverse_dynamics(q, qd, qdd)
+    over = np.abs(tau) > ARM.effort_limits
+    assert over.any()
+    assert not answer.within_limits
+    assert list(answer.points_over_limit) == [2]
+    assert answer.joints_over_limit == [ARM.joint_names[i] for i in np.flatnonzero(over[2])]
+    assert 'points above the effort limit of shoulder_pitch' in answer.message
+    np.testing.assert_allclose(answer.peak_effort, np.abs(tau).max(axis=0), rtol=1e-12)
+
+
+def test_some_joints_move_the_others_stand_where_they_are(client, start):
+    start(robot_description_file=ARM7, joints=f'[{", ".join(ARM.joint_names[:4])}]')
+    time = np.linspace(0.0, 1.0, 3)
+    q, qd, qdd = (values[:, [2, 1]] for values in motion(time))
+    names = [ARM.joint_names[2], ARM.joint_names[1]]
+    answer = ask(client, message(time, q, qd, qdd, names))
+    whole = np.repeat(ARM.neutral_position[None], 3, axis=0)
+    rates, changes = np.zeros((2, 3, N))
+    whole[:, [2, 1]], rates[:, [2, 1]], changes[:, [2, 1]] = q, qd, qdd
+    expected = ARM.inverse_dynamics(whole, rates, changes)[:, [2, 1]]
+    np.testing.assert_allclose(efforts(answer), expected, rtol=0, atol=1e-12)
+    # No names: the chosen joints.
+    q4, qd4, qdd4 = (values[:, :4] for values in motion(time))
+    answer = ask(client, message(time, q4, qd4, qdd4, names=[]))
+    assert answer.trajectory.joint_names == list(ARM.joint_names[:4])
+
+
+def test_what_is_no_trajectory_is_refused_in_words(shared):
+    time = np.array([0.0, 1.0, 1.0])
+    q, qd, qdd = motion(time)
+    nan = q.copy()
+    nan[1, 2] = np.nan
+    backwards = message(time, q)
+    short = message(time, q, qd)
+    short.points[1].velocities = [1.0]
+    without = message(time, q)
+    without.points[2].positions = []
+    cases = [(JointTrajectory(), 'expected at least one point, got none'),
+             (backwards, 'time: point 2: expected more than 1.0 s'),
+             (short, r'trajectory.points[1].velocities: expected 8 numbers for'),
+             (without, r'trajectory.points[2].positions: expected 8 numbers'),
+             (message(time, nan, qd, qdd), 'positions: expected 8 numbers'),
+             (message(time, q[:, :1], names=['nose']), "'nose' is not a joint"),
+             (message(time, q, 1e300 + qd, qdd), 'the result is not finite')]
+    for trajectory, reason in cases:
+        answer = ask(shared, trajectory)
+        assert not answer.success
+        assert reason in answer.message
+        assert answer.trajectory == JointTrajectory()
+        assert not len(answer.peak_effort)
+
+
+# The largest payload -----------------------------------------------------------------------
+
+
+def largest(client, **fields):
+    """Call ~/get_max_payload."""
+    return client.call(GetMaxPayload, '/dynamics_node/get_max_payload',
+                       GetMaxPayload.Request(**fields))
+
+
+def test_with_the_largest_payload_pinocchio_is_at_the_limit(shared):
+    q, point = np.linspace(0.8, -0.6, N), (0.02, 0.01, 0.1)
+    answer = largest(shared, position=q.tolist(), link='hand', point=Point(x=0.02, y=0.01, z=0.1))
+    assert answer.success, answer.message
+    assert answer.limiting_joint in answer.message
+    joint = ARM.joint_names.index(answer.limiting_joint)
+    text = with_payload_link(ARM7.read_text(), 'hand', answer.mass, point, np.zeros((3, 3)))
+    tau = PinocchioOracle(text).dynamics(ARM.joint_names, q, 0 * q)[2]
+    limits = ARM.effort_limits
+    assert abs(tau[joint]) == pytest.approx(limits[joint], rel=1e-10)
+    assert (np.abs(tau) <= limits * (1.0 + 1e-10)).all()
+    np.testing.assert_allclose(answer.effort, tau, rtol=0, atol=1e-10 * np.abs(tau).max())
+    np.testing.assert_array_equal(answer.effort_limits, limits)
+    assert answer.limiting_point == -1
+
+
+def test_over_a_trajectory_it_is_the_least_of_all_points(shared):
+    time = np.linspace(0.0, 2.0, 21)
+    states = motion(time)
+    answer = largest(shared, trajectory=message(time, *states), link='hand')
+    assert answer.success, answer.message
+    most = ARM.max_payload(states[0], 'hand', qd=states[1], qdd=states[2])
+    mass, joint, (place,) = most.least()
+    assert answer.mass == pytest.approx(mass, rel=1e-12)
+    assert (answer.limiting_joint, answer.limiting_point) == (ARM.joint_names[joint], place)
+    np.testing.assert_allclose(answer.position, states[0][place])
+    assert 'over the trajectory' in answer.message
+
+
+def test_the_limits_are_those_of_the_parameter_and_nothing_may_be_in_the_way(client, start):
+    low = ARM.effort_limits / 1.5
+    start(robot_description_file=ARM7, effort_limits=str(low.tolist()))
+    q = np.linspace(0.8, -0.6, N)
+    answer = largest(client, position=q.tolist(), link='hand')
+    expected = ARM.max_payload(q, 'hand', effort_limits=low)
+    assert answer.mass == pytest.approx(float(expected.mass), rel=1e-12)
+    assert 0.0 < answer.mass < 0.8 * float(ARM.max_payload(q, 'hand').mass)
+    answer = largest(client, position=q.tolist(), link='base')
+    assert (answer.mass, answer.limiting_joint) == (np.inf, '')
+    assert answer.message.startswith('no effort limit is in the way')
+    answer = largest(client, position=q.tolist(), link='nose')
+    assert not answer.success
+    assert np.isnan(answer.mass)
+    assert len(answer.effort) == len(answer.joint_names) == 0

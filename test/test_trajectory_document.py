@@ -1,0 +1,90 @@
+"""docs/trajectory.md: its code asks the real node over DDS, and its library code runs."""
+
+import json
+from pathlib import Path
+import subprocess
+import sys
+
+from dynamics_node import RobotModel
+import numpy as np
+import pytest
+from support.processes import NodeProcess
+from support.robots import ARM7
+from test_readme import blocks
+
+ROOT = Path(__file__).parents[1]
+ASK, SEND, LIBRARY = blocks(ROOT / 'docs' / 'trajectory.md')
+ARM = RobotModel.from_urdf(ARM7)
+GOAL = [0.4, -0.3, 0.2, 0.5, -0.1, 0.3, 0.2]
+NAMES = list(ARM.joint_names[:7])
+# In a process of its own, as a user's: it calls rclpy.init.
+USE = f"""
+import json
+rclpy.init()
+node = rclpy.create_node('mover')
+# A busy machine takes longer to start the node than a user waits for one that runs.
+node.create_client(ComputeTrajectoryEffort,
+                   'dynamics_node/compute_trajectory_effort').wait_for_service(60.0)
+answers = []
+for options in ({{}}, {{'without_gravity': True}}):
+    motion = swing({NAMES}, [0.0] * 7, {GOAL})
+    answers.append([[list(field) for field in (point.positions, point.velocities,
+                                               point.accelerations, point.effort)]
+                    for point in with_effort(node, motion, **options).points])
+try:
+    with_effort(node, swing({NAMES}, [0.0] * 7, {GOAL}, seconds=0.05))
+except RuntimeError as error:
+    answers.append(str(error))
+print(json.dumps(answers))
+rclpy.shutdown()
+"""
+
+
+@pytest.fixture
+def answers():
+    node = NodeProcess(robot_description_file=ARM7)
+    try:
+        run = subprocess.run([sys.executable, '-c', ASK + USE], capture_output=True, text=True,
+                             timeout=90.0, check=False)
+    finally:
+        node.close()
+    assert run.returncode == 0, run.stderr
+    return json.loads(run.stdout)
+
+
+def whole(values):
+    """Return columns for the gripper too, which stands still."""
+    return np.concatenate((values, np.zeros((len(values), len(ARM.joint_names) - 7))), axis=1)
+
+
+def test_the_efforts_that_its_code_gets_are_those_of_the_motion(answers):
+    with_gravity, without, refusal = answers
+    q, qd, qdd, effort = np.array(with_gravity).transpose(1, 0, 2)
+    np.testing.assert_allclose(q[-1], GOAL, atol=1e-12)
+    expected = ARM.inverse_dynamics(whole(q), whole(qd), whole(qdd))[:, :7]
+    np.testing.assert_allclose(effort, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
+    np.testing.assert_allclose(np.array(without)[:, 3],
+                               expected - ARM.gravity_torque(whole(q))[:, :7],
+                               rtol=0, atol=1e-11 * np.abs(expected).max())
+    assert 'are over their limits, first at point 0' in refusal
+
+
+def test_the_motion_of_its_code_is_one(answers):
+    q, qd, qdd, _ = np.array(answers[0]).transpose(1, 0, 2)
+    time = np.linspace(0.0, 3.0, 61)
+    np.testing.assert_allclose(np.gradient(q, time, axis=0)[1:-1], qd[1:-1], atol=1e-3)
+    np.testing.assert_allclose(np.gradient(qd, time, axis=0)[1:-1], qdd[1:-1], atol=2e-3)
+    assert not qd[0].any() and not qd[-1].any()
+
+
+def test_the_code_for_the_library_runs(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    names: dict = {}
+    exec(compile(LIBRARY, 'docs/trajectory.md', 'exec'), names)
+    assert names['efforts'].shape == (61, 8)
+    assert names['points'].tolist() == names['joints'].tolist() == []
+    assert 0.0 < names['payload'][0] < 100.0
+
+
+def test_the_code_for_the_controller_is_python():
+    assert 'follow' in compile(SEND, 'docs/trajectory.md', 'exec').co_names
