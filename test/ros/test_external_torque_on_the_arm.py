@@ -7,6 +7,7 @@ MuJoCo simulates the arm and judges the estimate by its own Jacobian; all times 
 
 import bisect
 
+from dynamics_node.ros.demo.damping import add_missing_damping
 from dynamics_node.ros.demo.mujoco_arm import MujocoArm
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 from soak.rig import Rig
 from std_srvs.srv import Trigger
+from support.robots import ARM7, public_robot
 
 PUSH = 0.3  # s
 # What is asked for: s, and part of the largest joint torque of the push.
@@ -38,10 +40,16 @@ class PushedRig(Rig):
 
     """
 
-    def __init__(self):
-        """Start everything."""
-        super().__init__(state_timeout=0.5, stop_ramp=0.2, publish_external_torque='true')
-        self.estimates, self.judge = [], MujocoArm(self.urdf_text)
+    def __init__(self, urdf):
+        """Start everything; the node is told of the damping that the simulated robot adds."""
+        self.judge = MujocoArm(urdf.read_text())
+        parameters = {}
+        if add_missing_damping(self.judge):
+            by_name = dict(zip(self.judge.names, self.judge.damping().tolist(), strict=True))
+            parameters['friction.viscous'] = [by_name[name] for name in self.judge.driven_names]
+        super().__init__(urdf=urdf, state_timeout=0.5, stop_ramp=0.2,
+                         publish_external_torque='true', **parameters)
+        self.estimates = []
         self.client.node.create_subscription(
             JointState, 'dynamics_node/external_torque', self._heard, QoSProfile(depth=1000))
         self._set('push_duration', type=ParameterType.PARAMETER_DOUBLE, double_value=PUSH)
@@ -86,10 +94,11 @@ class PushedRig(Rig):
                                np.array(message.effort)))
 
 
-@pytest.fixture(scope='module')
-def shared():
-    """Return the rig of all tests."""
-    rig = PushedRig()
+@pytest.fixture(scope='module', params=[ARM7, public_robot('ur_description/urdf/ur5_robot.urdf')],
+                ids=lambda path: path.stem)
+def shared(request):
+    """Return the rig of all tests with a robot."""
+    rig = PushedRig(request.param)
     yield rig
     rig.close()
 
@@ -147,10 +156,12 @@ def test_nothing_appears_while_the_arm_falls(rig):
         rig.until(lambda: rig.client.set_brakes(True))
         rig.until(rig.client.reset)
         rig.until(lambda: rig.client.set_brakes(True))
+        rig.during(0.1)  # what it was braked from is over
         begin = rig.client.now
         assert rig.client.set_brakes(False)
-        rig.until(lambda: rig.client.speed > 2.0)
-        return begin + 0.1, rig.client.now
+        rig.until(lambda: rig.client.truth[-1][0] > begin + 0.2 and rig.client.speed > 2.0)
+        time, _, velocity, _ = rig.client.truth_between(begin, rig.client.now)
+        return begin + 0.1, time[np.argmax(np.abs(velocity).max(axis=1) > 2.0)]
     rig.client.set_brakes(True)
     assert rig.client.enable(False).success
     rig.until(lambda: rig.client.output == 'READY')

@@ -25,6 +25,7 @@ class Pacer:
         self._simulated_to += steps * self._time_step
         return steps
 
-    def behind(self, now: float) -> float:
-        """Return how far the simulation is behind the clock reading `now` [s]."""
-        return now - self._simulated_to
+    @property
+    def simulated_to(self) -> float:
+        """Return the clock reading that the simulation has come to [s]."""
+        return self._simulated_to

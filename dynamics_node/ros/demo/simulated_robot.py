@@ -26,6 +26,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import SetBool, Trigger
 
+from .clock_offset import ClockOffset
 from .damping import add_missing_damping
 from .files import arm7_path, read_robot
 from .mujoco_arm import MujocoArm, UnstableError
@@ -38,9 +39,6 @@ from .viewer import open_viewer
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 VIEWER_PERIOD = 1 / 30  # [s]
-# Two clocks are read at once if the process has not lost its processor in between [s]; so often
-# it is tried.
-AT_ONCE, READINGS = 5e-5, 5
 
 
 class SimulatedRobot(Node):
@@ -57,6 +55,8 @@ class SimulatedRobot(Node):
         self._command_rows = self._rows_of(self._value('joints') or self.arm.driven_names)
         self._connect(text)
         self._pacer = Pacer(TIME_STEP, time.monotonic())
+        self._clock_offset = ClockOffset(lambda: self.get_clock().now().nanoseconds,
+                                         time.monotonic_ns)
         self._viewer = self._open_viewer()
         self._next_view = 0.0
         self.get_logger().info(f'{robot_name(text)} is on its brakes; command order: '
@@ -165,15 +165,8 @@ class SimulatedRobot(Node):
         for the arm: half a millisecond too much is a quarter of what is between two states.
 
         """
-        readings = []
-        for _ in range(READINGS):
-            before, clock, after = time.monotonic(), self.get_clock().now(), time.monotonic()
-            readings.append((after - before, before, clock))
-            if after - before < AT_ONCE:
-                break
-        _, now, clock = min(readings)
-        behind = round(self._pacer.behind(now) * 1e9)
-        return Time(nanoseconds=clock.nanoseconds - behind, clock_type=clock.clock_type)
+        nanoseconds = round(self._pacer.simulated_to * 1e9) + self._clock_offset.now()
+        return Time(nanoseconds=nanoseconds, clock_type=self.get_clock().clock_type)
 
     def _on_command(self, message: Float64MultiArray) -> None:
         """Take a command and hold it until the next one."""

@@ -27,10 +27,11 @@ def test_a_clock_that_stands_still_gives_no_steps():
     assert pacer.steps_due(4.0) == 0
 
 
-def test_it_says_how_far_the_simulation_is_behind():
-    """By what is left of a step, and by a pause that is caught up step by step."""
+def test_it_says_to_which_time_it_has_come():
+    """Whole steps, and a pause that is not caught up is skipped."""
     pacer = Pacer(0.001, 1.0)
-    assert pacer.behind(1.0) == 0.0
+    assert pacer.simulated_to == 1.0
     pacer.steps_due(1.0104)
-    assert pacer.behind(1.0104) == pytest.approx(0.0004)
-    assert pacer.behind(1.0204) == pytest.approx(0.0104)
+    assert pacer.simulated_to == pytest.approx(1.010)
+    pacer.steps_due(3.0)
+    assert pacer.simulated_to == pytest.approx(3.0)
