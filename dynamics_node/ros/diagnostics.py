@@ -62,6 +62,7 @@ class Diagnostics:
             'joints': ', '.join(robot.joint_names),
             'moving mass [kg]': f'{robot.model.total_mass:.6g}',
             'gravity [m/s^2]': ', '.join(f'{g:g}' for g in robot.model.gravity),
+            'payload': _payload_in_words(robot.model.payload),
             **{f'warning {i + 1}': text for i, text in enumerate(warnings)}})
 
     def _joint_states(self):
@@ -123,3 +124,7 @@ class Diagnostics:
             name=f'{self._node.get_name()}: {part}', level=level, message=message,
             hardware_id=self._node.get_fully_qualified_name(),
             values=[KeyValue(key=key, value=value) for key, value in values.items()])
+
+
+def _payload_in_words(payload):
+    return f'{payload.mass:g} kg on {payload.link}' if payload else 'none'

@@ -2,7 +2,13 @@
 
 import re
 
-from dynamics_interfaces.srv import GetGravityTorque, SetGravity, SetPayload
+from diagnostic_msgs.msg import DiagnosticArray
+from dynamics_interfaces.srv import (
+    GetGravityTorque,
+    InverseDynamics,
+    SetGravity,
+    SetPayload,
+)
 from dynamics_node import RobotModel
 from geometry_msgs.msg import Inertia, Vector3, Vector3Stamped
 import numpy as np
@@ -61,7 +67,7 @@ def as_it_was(shared):
 
 
 def test_a_payload_weighs_moves_and_is_gone_without_a_trace(shared):
-    before = gravity_torque(shared)
+    before, health = gravity_torque(shared), shared.listen(DiagnosticArray, '/diagnostics')
     for link in ('tool_center', 'forearm'):
         answer = set_payload(shared, link, BOX)
         assert answer.success, answer.message
@@ -71,6 +77,10 @@ def test_a_payload_weighs_moves_and_is_gone_without_a_trace(shared):
         expected = PinocchioOracle(text).dynamics(ARM.joint_names, Q, 0 * Q)[2]
         np.testing.assert_allclose(gravity_torque(shared), expected, rtol=0,
                                    atol=1e-11 * np.abs(expected).max())
+        shared.until(lambda: any(
+            status.values and {value.key: value.value for value in status.values}.get(
+                'payload') == f'1.5 kg on {link}'  # noqa: B023
+            for message in health for status in message.status))
         # Readable by everybody.
         assert parameter(shared, 'payload.link') == link
         assert parameter(shared, 'payload.mass') == 1.5
@@ -169,3 +179,74 @@ def test_a_gravity_that_cannot_be_is_refused(shared, vector, frame, message):
     assert re.search(message, answer.message), answer.message
     assert answer.gravity.vector.z == -9.81
     assert answer.gravity.header.frame_id == 'base'
+
+
+def test_all_of_it_from_the_start_by_parameters(client, start):
+    start(robot_description_file=ARM7, gravity='[0.0, 0.0, 9.81]', rotor_inertia='[0.3, 0.1]',
+          joints='[elbow_pitch, wrist_roll]',
+          **{'payload.link': 'hand', 'payload.mass': 1.5, 'payload.com': '[0.01, -0.02, 0.08]',
+             'payload.inertia': '[0.02, 0.001, -0.002, 0.03, 0.003, 0.025]',
+             'friction.viscous': '[0.7, 0.2]', 'friction.coulomb': '[0.4, 0.3]',
+             'friction.smoothing_velocity': 0.1})
+    index = [ARM.joint_names.index(name) for name in ('elbow_pitch', 'wrist_roll')]
+    q, qd, qdd, rotors = np.zeros((4, N))
+    q[:] = ARM.neutral_position
+    state = {'position': [0.3, 0.4], 'velocity': [0.2, -0.3], 'acceleration': [2.0, 3.0]}
+    q[index], qd[index], qdd[index] = state.values()
+    rotors[index] = 0.3, 0.1
+    text = with_payload_link(ARM7.read_text(), 'hand', 1.5, (0.01, -0.02, 0.08), TENSOR)
+    effort = PinocchioOracle(text, (0.0, 0.0, 9.81)).inverse_dynamics(ARM.joint_names, q, qd, qdd)
+    effort = (effort + rotors * qdd)[index]
+    friction = [0.7 * 0.2 + 0.4 * np.tanh(2.0), 0.2 * -0.3 + 0.3 * np.tanh(-3.0)]
+    for with_friction in (False, True):
+        answer = client.call(InverseDynamics, '/dynamics_node/inverse_dynamics',
+                             InverseDynamics.Request(**state, with_friction=with_friction))
+        assert answer.success, answer.message
+        expected = effort + np.multiply(friction, with_friction)
+        np.testing.assert_allclose(answer.effort, expected, rtol=1e-11)
+
+
+@pytest.mark.parametrize(('parameters', 'message'), [
+    ({'payload.mass': 1.0}, 'payload.link: expected the link that carries payload.mass'),
+    ({'payload.mass': 1.0, 'payload.link': 'nose'}, "expected one of base, .*; got 'nose'"),
+    ({'payload.mass': 1.0, 'payload.link': 'hand',
+      'payload.inertia': '[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]'}, 'inertia is not physical'),
+    ({'rotor_inertia': '[0.1]'}, 'rotor_inertia: expected 8 numbers for shoulder_yaw'),
+    ({'friction.coulomb': '[-1.0]'}, 'friction.coulomb: expected a finite number >= 0')])
+def test_a_start_with_wrong_ones_ends_at_once_and_says_why(start, parameters, message):
+    code, output = start(robot_description_file=ARM7, **parameters).wait(60.0)
+    assert code == 1
+    assert re.search(message, output), output
+
+
+def test_friction_and_rotors_at_run_time(shared):
+    def put(name, *values):
+        answer = shared.call(SetParameters, '/dynamics_node/set_parameters',
+                             SetParameters.Request(parameters=[Parameter(
+                                 name=name, value=ParameterValue(
+                                     type=8, double_array_value=list(values)))]))
+        assert answer.results[0].successful, answer.results[0].reason
+
+    def effort():
+        answer = shared.call(InverseDynamics, '/dynamics_node/inverse_dynamics',
+                             InverseDynamics.Request(
+                                 position=Q.tolist(), velocity=[0.1] * N, acceleration=[1.0] * N,
+                                 with_friction=True))
+        return np.array(answer.effort)
+
+    model, qd, qdd = ARM, np.full(N, 0.1), np.ones(N)
+    for name in ('rotor_inertia', 'friction.viscous', 'friction.coulomb',
+                 'friction.smoothing_velocity'):
+        values, before, field = np.linspace(0.1, 0.8, N), effort(), name.split('.')[-1]
+        change = model.with_rotor_inertia if field == name else model.with_friction
+        model = change(**{field: values})
+        put(name, *values)
+        after = effort()
+        expected = model.inverse_dynamics(Q, qd, qdd) + model.friction_torque(qd)
+        np.testing.assert_allclose(after, expected, rtol=0, atol=1e-12)
+        assert np.abs(after - before).max() > 0.01, name
+    for name in ('rotor_inertia', 'friction.viscous', 'friction.coulomb',
+                 'friction.smoothing_velocity'):
+        put(name)
+    expected = ARM.inverse_dynamics(Q, qd, qdd) + ARM.friction_torque(qd)
+    np.testing.assert_allclose(effort(), expected, rtol=0, atol=1e-12)
