@@ -110,14 +110,19 @@ def shared(request):
 @pytest.fixture
 def rig(shared):
     """Return the rig, the arm ACTIVE and floating at its start pose."""
-    if shared.distance > 1e-3:
-        shared.until(lambda: shared.client.set_brakes(True))
-        shared.until(shared.client.reset)
-        shared.until(lambda: shared.client.set_brakes(True))
-    shared.float()
-    if shared.client.set_brakes(False):
-        shared.during(0.1)
+    float_at_start(shared)
     return shared
+
+
+def float_at_start(rig):
+    """Bring the arm back to its start pose, and let it float there."""
+    if rig.distance > 1e-3:
+        rig.until(lambda: rig.client.set_brakes(True))
+        rig.until(rig.client.reset)
+        rig.until(lambda: rig.client.set_brakes(True))
+    rig.float()
+    if rig.client.set_brakes(False):
+        rig.during(0.1)
 
 
 def in_one_go(rig, action):
@@ -126,6 +131,7 @@ def in_one_go(rig, action):
         begin, end = action()
         if rig.longest_gap(begin - 0.1, end + 0.5) < LONGEST_GAP:
             return begin, end
+        float_at_start(rig)  # from where it is now, the next push would be another one
     pytest.fail('the robot was silent for too long in every attempt: the machine is too busy')
 
 
