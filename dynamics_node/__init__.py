@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         DynamicsTerms,
         Friction,
         MaxPayload,
+        MomentumObserver,
         over_limit,
         OverLimit,
         Payload,
@@ -36,8 +37,8 @@ __version__ = '0.1.0'
 
 __all__ = [
     'ArgumentError', 'DynamicsError', 'DynamicsTerms', 'Friction', 'InertiaError', 'MaxPayload',
-    'OverLimit', 'Payload', 'RobotDescriptionError', 'RobotModel', 'SingularMassMatrixError',
-    'Trajectory', '__version__', 'complete_trajectory', 'over_limit',
+    'MomentumObserver', 'OverLimit', 'Payload', 'RobotDescriptionError', 'RobotModel',
+    'SingularMassMatrixError', 'Trajectory', '__version__', 'complete_trajectory', 'over_limit',
 ]
 
 

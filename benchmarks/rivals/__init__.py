@@ -10,7 +10,8 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 
 # In the order of the report.
-FILES = ('general', 'pinocchio', 'mujoco', 'drake', 'kdl', 'roboticstoolbox', 'frax', 'textbook')
+FILES = ('payload', 'general', 'pinocchio', 'mujoco', 'drake', 'kdl', 'roboticstoolbox', 'frax',
+         'textbook')
 
 
 def load(names=FILES):

@@ -9,12 +9,13 @@ from .friction import Friction
 from .held_joints import forward_dynamics_held
 from .joint_selection import JointSelection
 from .max_payload import MaxPayload
+from .momentum_observer import MomentumObserver
 from .over_limit import over_limit, OverLimit
 from .payload import Payload
 from .robot_model import RobotModel
 from .terms import DynamicsTerms
 from .trajectory import complete_trajectory, Trajectory
 
-__all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload', 'OverLimit', 'Payload',
-           'RobotModel', 'Trajectory', 'complete_trajectory', 'forward_dynamics_held',
-           'over_limit']
+__all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload', 'MomentumObserver',
+           'OverLimit', 'Payload', 'RobotModel', 'Trajectory', 'complete_trajectory',
+           'forward_dynamics_held', 'over_limit']

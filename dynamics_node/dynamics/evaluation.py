@@ -38,7 +38,8 @@ class Evaluation:
     packed : tuple of numpy.ndarray
         See `kernels.packing.pack`.
     specialisation : Specialisation
-        Machine code for this robot, if there is any.
+        Machine code for this robot, if there is any; with a payload or rotors, that for any
+        inertia.
 
     """
 
@@ -57,7 +58,6 @@ class Evaluation:
         """
         self.packed = packed
         self.specialisation = specialisation
-        self._gravity = packed[1][-1, :3].copy()
         self._joint_names = joint_names
         self._n = len(joint_names)
         self._shapes = {name: shapes(self._n) for name, shapes in SHAPES.items()}
@@ -199,7 +199,7 @@ class Evaluation:
 
     def _compute(self, code, name, arrays, outputs):
         if code is not None and len(arrays[0]) >= code.lanes and are_ordinary(name, arrays):
-            code.batch(name, self._gravity, arrays, outputs)
+            code.batch(name, self.packed[1], arrays, outputs)
         else:
             _KERNELS[name](*self.packed, *arrays, *outputs)
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arguments import per_joint
 from ..errors import ArgumentError
 
 # Below this speed dry friction fades through zero unless somebody says otherwise, rad/s or m/s.
@@ -80,41 +81,3 @@ def make_friction(joint_names, viscous, coulomb, smoothing_velocity):
                             f'{smoothing.tolist()}')
     return Friction(per_joint('viscous', joint_names, viscous),
                     per_joint('coulomb', joint_names, coulomb), smoothing)
-
-
-def per_joint(name, joint_names, value):
-    """
-    Check one number per joint, or one for all.
-
-    Parameters
-    ----------
-    name : str
-        What it is, for people.
-    joint_names : tuple of str
-        The n joints.
-    value : array_like, shape (n,), or float
-
-    Returns
-    -------
-    numpy.ndarray, shape (n,)
-        Read-only.
-
-    Raises
-    ------
-    ArgumentError
-        If the length is wrong or a number is negative or not finite.
-
-    """
-    count = len(joint_names)
-    try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        array = np.full(1, np.nan)
-    if array.shape not in ((), (count,)):
-        raise ArgumentError(f'{name}: expected one number, or {count} for '
-                            f'{", ".join(joint_names)}; got shape {array.shape}')
-    if not (np.isfinite(array) & (array >= 0.0)).all():
-        raise ArgumentError(f'{name}: expected finite numbers >= 0, got {value!r}')
-    array = np.broadcast_to(array, (count,)).copy()
-    array.flags.writeable = False
-    return array

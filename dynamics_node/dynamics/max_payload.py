@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .arguments import check_link
 from .over_limit import checked_limits
-from .payload import check_link
 from ..errors import ArgumentError
 from ..kernels import closed_form
 from ..kernels.packing import pack

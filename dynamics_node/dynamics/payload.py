@@ -1,14 +1,13 @@
 """A payload: one more rigid body on a link."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from ..errors import ArgumentError, quoted
+from .arguments import check_link
+from ..errors import ArgumentError
 from ..inertia import check_physical, pseudo_inertia, transform_pseudo_inertia
-
-# Links that an error message lists.
-_MOST_SHOWN = 50
 
 
 @dataclass(frozen=True)
@@ -34,7 +33,7 @@ class Payload:
     com: np.ndarray
     inertia: np.ndarray
 
-    @property
+    @cached_property
     def pseudo_inertia(self):
         """J of the payload in the link's frame, shape (4, 4): kg m², kg m, kg."""
         return pseudo_inertia(self.mass, self.com, self.inertia)
@@ -87,26 +86,6 @@ def make_payload(links, link, mass, com, inertia):
     payload = Payload(link, mass, com, inertia)
     check_physical(payload.pseudo_inertia)
     return payload
-
-
-def check_link(links, link):
-    """
-    Demand that a link is one of the robot's.
-
-    Parameters
-    ----------
-    links : dict of str to LinkFrame
-    link : str
-
-    Raises
-    ------
-    ArgumentError
-        With the links that there are.
-
-    """
-    if link not in links:
-        shown = ', '.join(list(links)[:_MOST_SHOWN]) + (', ...' * (len(links) > _MOST_SHOWN))
-        raise ArgumentError(f'link: expected one of {shown}; got {quoted(link)}')
 
 
 def loaded_inertia(tree, payload):

@@ -4,10 +4,11 @@ import inspect
 
 import numpy as np
 
+from .arguments import check_link, gravity_vector, per_joint
 from .evaluation import Evaluation, SHAPES
-from .friction import make_friction, per_joint, SMOOTHING_VELOCITY
+from .friction import make_friction, SMOOTHING_VELOCITY
 from .max_payload import max_payload
-from .payload import check_link, loaded_inertia, make_payload
+from .payload import loaded_inertia, make_payload
 from .specialisation import Specialisation
 from .terms import DynamicsTerms
 from .trajectory import complete_trajectory
@@ -68,7 +69,7 @@ class RobotModel:
 
         """
         self._tree = tree
-        self._gravity = _gravity_vector(gravity)
+        self._gravity = gravity_vector(gravity)
         self._n = len(tree.joint_names)
         self._payload = payload
         self._rotor_inertia = per_joint('rotor_inertia', tree.joint_names, rotor_inertia)
@@ -78,7 +79,7 @@ class RobotModel:
         self._specialisation = specialisation or Specialisation(*pack(tree, self._gravity))
         if self._inertia is not tree.inertia or self._rotor_inertia.any():
             packed = pack(tree, self._gravity, self._inertia, self._rotor_inertia)
-            specialisation = Specialisation(*packed)
+            specialisation = self._specialisation.for_any_inertia
         else:
             packed = pack(tree, self._gravity)
             specialisation = self._specialisation
@@ -326,7 +327,7 @@ class RobotModel:
         """Whether machine code of this robot's own is in use."""
         return self._evaluation.specialisation.code is not None
 
-    def specialise(self, wait=True):
+    def specialise(self, wait=True, loads=False):
         """
         Ask for machine code of this robot's own, without waiting until it is used often.
 
@@ -335,19 +336,23 @@ class RobotModel:
         wait : bool
             True: return when it is in use, after some seconds if it was never compiled on this
             machine. False: return at once, and have another process compile it.
+        loads : bool
+            True: ask for the machine code that serves this robot under every payload and rotor
+            inertia too, so that the first of them finds it. A robot has it beside its own,
+            because its own, which knows that many numbers are zero, is faster.
 
         Returns
         -------
         bool
-            Whether it is in use. It never is for robots with very many joints (more than about
-            16 in one chain), on Pythons other than CPython 3.11 and later, and with
+            Whether this model's is in use. It never is for robots with very many joints (more
+            than about 16 in one chain), on Pythons other than CPython 3.11 and later, and with
             DYNAMICS_NODE_SPECIALISE=0.
 
         """
         specialisation = self._evaluation.specialisation
         if wait:
-            return specialisation.wait()
-        specialisation.begin()
+            return specialisation.wait(loads)
+        specialisation.begin(loads)
         return self.is_specialised
 
     def _use(self, code):
@@ -360,7 +365,7 @@ class RobotModel:
                 setattr(self, name, make_callable(
                     code.loaded, name, shapes(self._n), fallback,
                     getattr(RobotModel, name).__doc__,
-                    DynamicsTerms, self._gravity))
+                    DynamicsTerms, self._evaluation.packed[1]))
 
     def mass_matrix(self, q, *, out=None, threads=None):
         """
@@ -770,11 +775,3 @@ class RobotModel:
         return max_payload(unloaded, q, link, point, rest if qd is None else qd,
                            rest if qdd is None else qdd,
                            self.effort_limits if effort_limits is None else effort_limits)
-
-
-def _gravity_vector(value):
-    vector = np.array(value, dtype=float)
-    if vector.shape != (3,) or not np.all(np.isfinite(vector)):
-        raise ArgumentError(f'gravity: expected three finite numbers, m/s^2, got {value!r}')
-    vector.flags.writeable = False
-    return vector

@@ -20,17 +20,22 @@ class Specialisation:
     """
     Machine code for one robot, or the way to it.
 
-    It does not depend on gravity, so models of the robot under several gravities share it. It is
-    a matter of speed only: whatever fails here is logged, and the general kernel goes on.
+    It does not depend on gravity, so models of the robot under several gravities share it. A
+    robot has two: the faster one knows the inertia of its bodies; the one `for_any_inertia` is
+    shared by all models with a payload or rotors, so a new payload needs no compiler. It is a
+    matter of speed only: whatever fails here is logged, and the general kernel goes on.
 
     Attributes
     ----------
     code : RobotCode or None
         None while there is none.
+    for_any_inertia : Specialisation or None
+        The robot's code that takes the inertia of bodies and rotors as it comes; None if this
+        is it.
 
     """
 
-    def __init__(self, structure, numbers):
+    def __init__(self, structure, numbers, any_inertia=False):
         """
         Take the code from disk if it was made before.
 
@@ -38,21 +43,29 @@ class Specialisation:
         ----------
         structure, numbers : numpy.ndarray
             See `kernels.packing.pack`.
+        any_inertia : bool
+            See `kernels.specialised.quantities`.
 
         """
         self.code = None
-        self._packed = structure, numbers
+        self._packed = structure, numbers, any_inertia
         self._models: weakref.WeakSet = weakref.WeakSet()
-        self._lock = threading.Lock()
+        # A new model must not wait while another thread loads.
+        self._lock, self._loading = threading.Lock(), threading.Lock()
         self._calls = 0
+        self._loads = False
         self._process = None
+        self._loader: threading.Thread | None = None
         self._wanted = (len(structure) > 0 and specialised.is_wanted()
                         and specialised.is_supported())
+        # Fetched at once too, if it is on disk: a first payload may come in a control loop.
+        self.for_any_inertia = (
+            None if any_inertia else type(self)(structure, numbers, any_inertia=True))
         if self._wanted:
             self._take()
 
     def __reduce__(self):
-        return type(self), self._packed
+        return type(self), self._packed, {'for_any_inertia': self.for_any_inertia}
 
     def attach(self, model):
         """
@@ -68,6 +81,9 @@ class Specialisation:
             self._models.add(model)
         if self.code is not None:
             self._hand_out([model])
+        elif self._process is not None:
+            # Begun before this model came: it may be ready.
+            self.begin()
 
     def count(self, states):
         """Notice that the general kernel was asked for so many states; begin if it is often."""
@@ -77,8 +93,19 @@ class Specialisation:
         self._calls -= _ASK_EVERY
         self.begin()
 
-    def begin(self):
-        """Have the code made in the background, or fetch it if that is done."""
+    def begin(self, loads=False):
+        """
+        Have the code made in the background, or fetch it if that is done.
+
+        Parameters
+        ----------
+        loads : bool
+            Then that for any inertia too. One after the other: each takes a core for seconds.
+
+        """
+        self._loads = self._loads or loads
+        if self.code is not None and loads and self.for_any_inertia is not None:
+            self.for_any_inertia.begin()
         if not self._wanted or self.code is not None:
             return
         try:
@@ -86,14 +113,29 @@ class Specialisation:
                 self._process = specialised.start(*self._packed)
             elif self._process.poll() is not None:
                 self._wanted = self._process.returncode == 0
-                if self._wanted:
+                if self._wanted and self._loader is None:
                     # Loading takes some milliseconds: not in somebody's control loop.
-                    threading.Thread(target=self._take, name='dynamics_node load').start()
+                    self._loader = threading.Thread(target=self._take, name='dynamics_node load')
+                    self._loader.start()
         except (OSError, RuntimeError) as error:  # no process or thread can be started
             self._give_up(error)
 
-    def wait(self):
-        """Make the code here, or wait for the background; return whether there is one."""
+    def wait(self, loads=False):
+        """
+        Make the code here, or wait for the background; return whether there is one.
+
+        Parameters
+        ----------
+        loads : bool
+            That for any inertia too.
+
+        Returns
+        -------
+        bool
+
+        """
+        if loads and self.for_any_inertia is not None:
+            self.for_any_inertia.wait()
         if self._wanted and self.code is None:
             if self._process is not None:
                 self._process.wait()
@@ -102,18 +144,23 @@ class Specialisation:
 
     def _take(self, make=False):
         # Once: a thread that loads and a caller that waits may both come here.
-        with self._lock:
+        with self._loading:
             if self.code is not None:
                 return
+            code = None
             try:
-                self.code = (specialised.make if make else specialised.from_disk)(*self._packed)
+                code = (specialised.make if make else specialised.from_disk)(*self._packed)
             except Exception as error:
                 self._give_up(error)
             # Asked for, and not there: too large a robot, or a place that cannot be written.
-            self._wanted = self.code is not None or (self._wanted and self._process is None)
-            models = list(self._models)
-        if self.code is not None:
+            self._wanted = code is not None or (self._wanted and self._process is None)
+            with self._lock:
+                self.code = code
+                models = list(self._models)
+        if code is not None:
             self._hand_out(models)
+            if self._loads and self.for_any_inertia is not None:
+                self.for_any_inertia.begin()
 
     def _hand_out(self, models):
         for model in models:

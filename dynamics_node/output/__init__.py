@@ -9,6 +9,7 @@ publish an effort that did not pass `EffortLimiter`.
 """
 
 from .channel import OutputChannel
+from .effort_at_rest import EffortAtRest
 from .intake import take_state
 from .joint_state_buffer import JointStateBuffer
 from .limiter import EffortLimiter, InvalidEffortError
@@ -18,6 +19,7 @@ from .stamps import StampTolerance
 from .state_machine import OutputState, OutputStateMachine
 
 __all__ = [
-    'EffortLimiter', 'InvalidEffortError', 'JointStateBuffer', 'MotionLimits', 'OutputChannel',
-    'OutputState', 'OutputStateMachine', 'RejectedStateError', 'StampTolerance', 'take_state',
+    'EffortAtRest', 'EffortLimiter', 'InvalidEffortError', 'JointStateBuffer', 'MotionLimits',
+    'OutputChannel', 'OutputState', 'OutputStateMachine', 'RejectedStateError', 'StampTolerance',
+    'take_state',
 ]

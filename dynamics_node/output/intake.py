@@ -4,7 +4,8 @@ from .motion_limits import VELOCITY_MARGIN
 from .rejected import RejectedStateError
 
 
-def take_state(buffer, channel, now, names, positions, velocities=(), stamp=0, clock=0):
+def take_state(buffer, channel, now, names, positions, velocities=(), stamp=0, clock=0,
+               efforts=None):
     """
     Take a message into the buffer, and stop or restart the output if it says so.
 
@@ -14,7 +15,7 @@ def take_state(buffer, channel, now, names, positions, velocities=(), stamp=0, c
     channel : OutputChannel
     now : float
         Arrival on the steady clock, s.
-    names, positions, velocities, stamp, clock
+    names, positions, velocities, stamp, clock, efforts
         See `JointStateBuffer.update`.
 
     Returns
@@ -32,7 +33,7 @@ def take_state(buffer, channel, now, names, positions, velocities=(), stamp=0, c
         back = buffer.follow_clock(clock)
         if back:
             channel.restart(now, f'the clock went back by {back:.3f} s, measured states dropped')
-        buffer.update(now, names, positions, velocities, stamp, clock)
+        buffer.update(now, names, positions, velocities, stamp, clock, efforts)
     except RejectedStateError as error:
         if error.is_fault:
             channel.fault(now, str(error))

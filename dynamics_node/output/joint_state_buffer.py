@@ -18,7 +18,7 @@ MAX_JUMPS = 3
 
 class JointStateBuffer:
     """
-    Positions and velocities by joint name.
+    Positions, velocities and, where they are wanted, efforts by joint name.
 
     Messages may name the joints in any order, only some of them, and others besides. A message
     is taken whole or rejected whole; a rejected one does not make anything fresh.
@@ -27,6 +27,8 @@ class JointStateBuffer:
     ----------
     accepted : int
         Messages taken.
+    breaks : int
+        How often everything measured was forgotten; see `forget`.
     rejected : collections.Counter
         Messages dropped, by kind.
     tolerance : StampTolerance
@@ -62,6 +64,7 @@ class JointStateBuffer:
         # fast as numpy, and this runs for every state before its command goes out.
         self._position = np.array(neutral, dtype=float).tolist()
         self._velocity = [math.nan] * len(names)
+        self._effort = [math.nan] * len(names)
         self._time = [-math.inf] * len(names)
         self._stamp = [0] * len(names)
         self._newest_stamp = 0
@@ -73,7 +76,7 @@ class JointStateBuffer:
         self._pairs: list[tuple[int, int]] = []
         self._needed_pairs: list[tuple[int, int]] = []
         self._has_all_needed = False
-        self.accepted = 0
+        self.accepted = self.breaks = 0
         self.rejected: Counter[str] = Counter()
 
     def follow_clock(self, clock):
@@ -106,7 +109,7 @@ class JointStateBuffer:
         self.forget()
         return back
 
-    def update(self, now, names, positions, velocities=(), stamp=0, clock=0):
+    def update(self, now, names, positions, velocities=(), stamp=0, clock=0, efforts=None):
         """
         Take one message.
 
@@ -123,6 +126,9 @@ class JointStateBuffer:
             When the state was measured, ns; 0 if the message does not say it.
         clock : int
             Arrival on the clock that stamps belong to, ns.
+        efforts : sequence of float, optional
+            As many as names; anything else makes them unknown, and is no reason to drop a state
+            whose positions are good. None: they are not asked for.
 
         Raises
         ------
@@ -139,6 +145,8 @@ class JointStateBuffer:
         except RejectedStateError as error:
             self.rejected[error.kind] += 1
             raise
+        if efforts is not None:
+            self._take_efforts(efforts, len(names))
         if self._jumps and any(target == self._jumped_joint for _, target in self._needed_pairs):
             self._jumps = 0  # it is the joint itself that stands where it may
         self.accepted += 1
@@ -172,6 +180,16 @@ class JointStateBuffer:
         self._newest_stamp = max(stamp, self._newest_stamp)
         self._oldest = now if is_complete else min(
             (self._time[i] for i in self._needed), default=-math.inf)
+
+    def _take_efforts(self, efforts, count):
+        effort = self._effort
+        if len(efforts) != count:
+            for _, target in self._pairs:
+                effort[target] = math.nan
+            return
+        for source, target in self._pairs:
+            value = efforts[source]
+            effort[target] = math.nan if math.isinf(value) else value
 
     def _check_order(self, pairs, stamp, clock):
         if stamp > self._newest_stamp:
@@ -221,6 +239,8 @@ class JointStateBuffer:
         self._forgotten = max(self._oldest, self._forgotten)
         self._oldest = -math.inf
         self._jumps = 0
+        self.breaks += 1
+        self._effort = [math.nan] * len(self._names)
         self._time = [-math.inf] * len(self._names)
         self._stamp = [0] * len(self._names)
         self._newest_stamp = 0
@@ -259,6 +279,16 @@ class JointStateBuffer:
     def velocity(self):
         """Newest velocities, NaN where unknown; shape (n,), a copy."""
         return np.array(self._velocity, dtype=float)
+
+    @property
+    def effort(self):
+        """Newest efforts, NaN where unknown; shape (n,), a copy."""
+        return np.array(self._effort, dtype=float)
+
+    @property
+    def measured(self):
+        """When the oldest of the needed joints was measured, ns; 0 where that is not said."""
+        return min((self._stamp[i] for i in self._needed), default=0)
 
     @property
     def is_complete(self):

@@ -1,4 +1,4 @@
-"""What the node says on /diagnostics: model, joint states, output, state machine."""
+"""What the node says on /diagnostics: model, joint states, output and so on."""
 
 import math
 import time
@@ -12,7 +12,7 @@ from .rate import Rate
 class Diagnostics:
     """Publishes the node's health once a second and on every change of the output."""
 
-    def __init__(self, node, parameters, get_robot, states, output):
+    def __init__(self, node, parameters, get_robot, states, output, external_torque):
         """
         Create the publisher.
 
@@ -23,6 +23,7 @@ class Diagnostics:
         get_robot : callable() -> Robot or None
         states : StateInput
         output : CommandOutput
+        external_torque : ExternalTorque
 
         """
         self._node = node
@@ -30,6 +31,7 @@ class Diagnostics:
         self._get_robot = get_robot
         self._states = states
         self._output = output
+        self._external_torque = external_torque
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', RESULT,
                                                 event_callbacks=NO_EVENTS)
         self._state_rate = Rate()
@@ -44,7 +46,8 @@ class Diagnostics:
     def publish(self):
         """Publish the present health."""
         message = DiagnosticArray(status=[
-            self._model(), self._joint_states(), self._command(), self._state_machine()])
+            self._model(), self._joint_states(), self._command(), self._state_machine(),
+            self._external()])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 
@@ -108,6 +111,13 @@ class Diagnostics:
             machine.name, DiagnosticStatus.OK)
         return self._status('state machine', level, f'{machine.name}: {machine.reason}', {
             'state': machine.name, 'reason': machine.reason, 'latched fault': machine.fault})
+
+    def _external(self):
+        if not self._external_torque.is_on:
+            return self._status('external torque', DiagnosticStatus.OK, 'off', {})
+        problem, values = self._external_torque.health()
+        level = DiagnosticStatus.WARN if problem else DiagnosticStatus.OK
+        return self._status('external torque', level, problem or 'on', values)
 
     def _status(self, part, level, message, values):
         return DiagnosticStatus(

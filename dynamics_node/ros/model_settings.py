@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ..dynamics.arguments import check_link
 from ..dynamics.friction import SMOOTHING_VELOCITY
-from ..dynamics.payload import check_link
 
 # ixx ixy ixz iyy iyz izz, as in geometry_msgs/Inertia, by row and column of the tensor.
 _TENSOR = ([0, 1, 2], [1, 3, 4], [2, 4, 5])

@@ -12,6 +12,7 @@ from .compensation import Compensation
 from .description_source import DescriptionSource
 from .diagnostics import Diagnostics
 from .enabling import Enabling
+from .external_torque import ExternalTorque
 from .guard import logged
 from .mismatch import mismatches
 from .model_settings import configured, PER_JOINT
@@ -65,6 +66,7 @@ class DynamicsNode(Node):
         self._start = time.monotonic()
         self.parameters = Parameters(self)
         self._results = Results(self, self.parameters)
+        self._external_torque = ExternalTorque(self, self.parameters)
         self.output = CommandOutput(self, self.parameters, self._get_robot,
                                     self._output_changed)
         self.states = StateInput(self, self.parameters, self._get_robot, self.output.channel,
@@ -74,7 +76,7 @@ class DynamicsNode(Node):
         self._enabling = Enabling(self, self.parameters, self._get_robot, self.output,
                                   self._rivals)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.states,
-                                        self.output)
+                                        self.output, self._external_torque)
         self._compensation = Compensation(self, self.parameters)
         self._answering = [kind(self, self._get_robot, self.parameters) for kind in (
             DynamicsServices, SettingServices, TrajectoryServices)]
@@ -112,8 +114,9 @@ class DynamicsNode(Node):
             kept = 'the one before stays in force' if self._robot else 'still waiting for one'
             self.logger.error(f'robot description from {origin} refused, {kept}: {error}')
             return True
-        # In another process; the general kernel, loaded at the start, answers meanwhile.
-        model.specialise(wait=False)
+        # In another process; the general kernel, loaded at the start, answers meanwhile. For
+        # payloads too: when one comes, the arm may float, and nothing should be started then.
+        model.specialise(wait=False, loads=True)
         is_first = self._robot is None
         self._robot = robot
         self._configure(self.parameters.values)
@@ -174,6 +177,7 @@ class DynamicsNode(Node):
         if self._robot is not None:
             self._robot.buffer.tolerance = StampTolerance(values['state_timeout'])
         self.output.configure()
+        self.states.with_effort = self._external_torque.configure()
 
     def on_state(self, robot, now, stamp):
         """Compute what follows from a state that is fit for use, and publish it."""
@@ -191,6 +195,8 @@ class DynamicsNode(Node):
             self._has_states = True
             self.logger.info('joint states arrive: publishing gravity torque')
         self._results.publish(robot, stamp, effort)
+        if self._external_torque.is_on:
+            self._external_torque.on_state(robot, stamp)
 
     @logged
     def _every_second(self):

@@ -152,6 +152,11 @@ PARAMETERS = (
               'Many arms compensate gravity below the effort interface: leave it off there',
               read_only=True),
     Parameter('publish_dynamics', FLAG, True, 'Publish ~/dynamics while somebody listens'),
+    Parameter('publish_external_torque', FLAG, False, 'Publish ~/external_torque. Needs '
+              'velocities and efforts in joint_states, and efforts that are torques'),
+    Parameter('external_torque.gain', DOUBLE, 100.0, 'Of the momentum observer, 1/s: 95 % of a '
+              'step are there after 3 / gain. Larger is faster and noisier', low=0.0,
+              low_open=True, high=10_000.0),
     Parameter('state_timeout', DOUBLE, 0.1, 'Largest age of a joint state, s, on the steady '
               'clock', low=0.0, low_open=True, high=10.0),
     Parameter('allow_several_state_publishers', FLAG, False, 'Enable although joint_states has '

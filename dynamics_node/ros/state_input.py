@@ -57,6 +57,7 @@ class StateInput:
         self.on_internal_error = listener.on_internal_error
         self._reader = JointStateReader()
         self._sequence_number = 0
+        self._with_effort = False
         self._has_unstamped = False
         self._warnings: dict[str, Throttle] = {}
         self.publishers = self.skipped = 0
@@ -65,6 +66,15 @@ class StateInput:
             joint_states(parameters['allow_several_state_publishers']),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=raw)
+
+    @property
+    def with_effort(self):
+        """Whether efforts are taken into the buffer, too."""
+        return self._with_effort
+
+    @with_effort.setter
+    def with_effort(self, value):
+        self._with_effort = self._reader.with_effort = value
 
     @property
     def topic(self):
@@ -106,7 +116,8 @@ class StateInput:
         stamp = header_stamp.sec * 1_000_000_000 + header_stamp.nanosec
         try:
             is_usable = take_state(robot.buffer, self._channel, now, message.name,
-                                   message.position, message.velocity, stamp, clock)
+                                   message.position, message.velocity, stamp, clock,
+                                   message.effort if self._with_effort else None)
         except RejectedStateError as error:
             self._warn(error)
             return

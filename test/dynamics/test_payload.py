@@ -3,22 +3,13 @@
 from dynamics_node import ArgumentError, InertiaError, RobotModel
 import numpy as np
 import pytest
-from support.carried import with_payload_link
+from support.carried import random_body, with_payload_link
 from support.comparison import assert_terms_agree
 from support.mujoco_oracle import MujocoOracle
 from support.pinocchio_oracle import PinocchioOracle
 from support.robots import ARM7, public_robot, random_state, random_urdf
 
 RELATIVE = 1e-11
-
-
-def random_body(rng):
-    """Return mass, centre of mass and inertia tensor of a real body: of eight points."""
-    points, masses = rng.normal(0.0, 0.1, (8, 3)), rng.uniform(0.1, 0.5, 8)
-    com = masses @ points / masses.sum()
-    r = points - com
-    tensor = sum(m * (p @ p * np.eye(3) - np.outer(p, p)) for m, p in zip(masses, r, strict=True))
-    return masses.sum(), com, tensor
 
 
 def assert_agrees(text, link, body, gravity, seed):

@@ -1,5 +1,6 @@
 """The buffer: any order, parts, extras; and what it drops."""
 
+import contextlib
 import math
 
 from dynamics_node.output import (
@@ -275,3 +276,78 @@ def test_what_is_said_of_the_motion_is_of_the_needed_joints():
     unit.update(0.0, list(NAMES), [0.0, 5.0, 5.0], [2.5, 0.0, 9.0])
     assert unit.runaway() == 'a at 2.5 (limit 1)'
     assert unit.outside() == 'b at 5 (limits -3 to 3)'
+
+
+# Efforts -------------------------------------------------------------------------------------
+
+def test_efforts_come_by_name_like_everything_else():
+    unit = buffer()
+    assert np.isnan(unit.effort).all()
+    unit.update(0.0, ['c', 'x', 'a'], [3.0, 9.0, 1.0], efforts=[-3.0, -9.0, -1.0])
+    np.testing.assert_array_equal(unit.effort, [-1.0, math.nan, -3.0])
+    unit.effort[:] = 99.0
+    np.testing.assert_array_equal(unit.effort, [-1.0, math.nan, -3.0])
+
+
+@pytest.mark.parametrize('efforts', [
+    [], [1.0], [1.0] * 4, [math.nan] * 3, [math.inf, -math.inf, math.nan]], ids=str)
+def test_wrong_efforts_are_unknown_and_spoil_no_state(efforts):
+    unit = buffer()
+    unit.update(0.0, NAMES, [0, 0, 0], [0, 0, 0], efforts=[1.0, 2.0, 3.0])
+    unit.update(0.1, NAMES, [1, 2, 3], [4, 5, 6], efforts=efforts)
+    assert np.isnan(unit.effort).all()
+    assert unit.rejected == {} and unit.accepted == 2 and unit.age(0.1) == 0.0
+    np.testing.assert_array_equal(unit.position, [1, 2, 3])
+    np.testing.assert_array_equal(unit.velocity, [4, 5, 6])
+
+
+@given(st.lists(st.floats(), max_size=5), st.permutations(['a', 'b', 'c', 'x']),
+       st.lists(st.floats(), min_size=4, max_size=4))
+def test_whatever_the_efforts_are_the_state_is_the_same(efforts, names, positions):
+    units = [buffer(needed=('a', 'b')), buffer(needed=('a', 'b'))]
+    for unit, given_efforts in zip(units, (None, efforts), strict=True):
+        with contextlib.suppress(RejectedStateError):
+            unit.update(1.0, names, positions, (), efforts=given_efforts)
+        assert not np.isinf(unit.effort).any()
+    with_none, with_some = units
+    assert with_none.rejected == with_some.rejected
+    assert with_none.accepted == with_some.accepted
+    assert with_none.age(2.0) == with_some.age(2.0)
+    assert with_none.position.tobytes() == with_some.position.tobytes()
+
+
+def test_one_effort_that_is_not_known_leaves_the_others():
+    unit = buffer()
+    unit.update(0.0, NAMES, [0, 0, 0], efforts=[1.0, math.nan, 3.0])
+    np.testing.assert_array_equal(unit.effort, [1.0, math.nan, 3.0])
+
+
+def test_a_state_that_is_dropped_brings_no_efforts():
+    unit = buffer()
+    unit.update(0.0, NAMES, [0, 0, 0], efforts=[1.0, 2.0, 3.0])
+    with pytest.raises(RejectedStateError):
+        unit.update(0.1, NAMES, [math.nan, 0, 0], efforts=[4.0, 5.0, 6.0])
+    np.testing.assert_array_equal(unit.effort, [1.0, 2.0, 3.0])
+
+
+def test_forgetting_is_counted_and_takes_the_efforts():
+    unit = buffer()
+    unit.update(0.0, NAMES, [0, 0, 0], efforts=[1.0, 2.0, 3.0])
+    assert unit.breaks == 0
+    unit.forget()
+    assert unit.breaks == 1
+    assert np.isnan(unit.effort).all()
+
+
+def test_a_state_was_measured_when_its_oldest_needed_part_was():
+    unit = moving(needed=('a', 'b'))
+    assert unit.measured == 0
+    stamped(unit, 0.01, 'ac', (0.0, 0.0))
+    assert unit.measured == 0
+    stamped(unit, 0.02, 'b', (0.0,))
+    assert unit.measured == round(100.01 * SECOND)
+    stamped(unit, 0.03, 'ac', (0.0, 0.0))
+    assert unit.measured == round(100.02 * SECOND)
+    # Without a stamp nobody says when.
+    unit.update(0.04, ['a'], [0.0])
+    assert unit.measured == 0

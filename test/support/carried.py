@@ -1,5 +1,16 @@
 """A payload as the judges see it: one more link in the URDF's text, on a fixed joint."""
 
+import numpy as np
+
+
+def random_body(rng):
+    """Return mass, centre of mass and inertia tensor of a real body: of eight points."""
+    points, masses = rng.normal(0.0, 0.1, (8, 3)), rng.uniform(0.1, 0.5, 8)
+    com = masses @ points / masses.sum()
+    r = points - com
+    tensor = sum(m * (p @ p * np.eye(3) - np.outer(p, p)) for m, p in zip(masses, r, strict=True))
+    return masses.sum(), com, tensor
+
 
 def with_payload_link(text, link, mass, com, inertia):
     """

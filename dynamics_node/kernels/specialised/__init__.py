@@ -6,6 +6,9 @@ A robot's tree is known before its state, so the formulas of `closed_form` are r
 side (`code`, `sine`, `functions`), given an entry from Python (`call`), compiled (`machine`), and
 kept on disk (`store`). `robot_code` puts it together, `background` does so in another process.
 
+A robot has two: its own knows the inertia of its bodies as it knows the tree; the other reads it
+when it runs, and so serves every payload and every rotor inertia. It is a little slower.
+
 Nobody has to wait for it: the general kernel answers until it is ready.
 
 What may change here: how the formulas become machine code, never the formulas.

@@ -26,7 +26,7 @@ _processes: dict = {}
 _MOST_AT_ONCE = 2
 
 
-def start(structure, numbers):
+def start(structure, numbers, any_inertia=False):
     """
     Start to make a robot's machine code, unless that is being done.
 
@@ -36,6 +36,8 @@ def start(structure, numbers):
     ----------
     structure, numbers : numpy.ndarray
         See `packing.pack`.
+    any_inertia : bool
+        See `quantities`.
 
     Returns
     -------
@@ -49,7 +51,7 @@ def start(structure, numbers):
         If no process can be started.
 
     """
-    name = store.key(structure, numbers)
+    name = store.key(structure, numbers, any_inertia)
     if name not in _processes:
         if sum(process.poll() is None for process in _processes.values()) >= _MOST_AT_ONCE:
             return None
@@ -62,7 +64,8 @@ def start(structure, numbers):
             [sys.executable, '-m', __name__], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL, env=environment, start_new_session=True)
         _processes[name] = process
-        np.savez(buffer := io.BytesIO(), structure=structure, numbers=numbers)
+        np.savez(buffer := io.BytesIO(), structure=structure, numbers=numbers,
+                 any_inertia=any_inertia)
         assert process.stdin is not None
         with contextlib.suppress(BrokenPipeError), process.stdin as stream:
             stream.write(buffer.getvalue())
@@ -90,11 +93,11 @@ def main():
     with contextlib.suppress(OSError, AttributeError):
         os.nice(10)
     with np.load(io.BytesIO(sys.stdin.buffer.read())) as robot:
-        structure, numbers = robot['structure'], robot['numbers']
-    object_files = robot_code.compile_robot(structure, numbers)
+        packed = robot['structure'], robot['numbers'], bool(robot['any_inertia'])
+    object_files = robot_code.compile_robot(*packed)
     if object_files is None:
         return 1
-    return 0 if store.save(store.key(structure, numbers), object_files) else 1
+    return 0 if store.save(store.key(*packed), object_files) else 1
 
 
 if __name__ == '__main__':

@@ -44,9 +44,8 @@ LARGEST_NUMBER = 1e100
 
 # Slots of the context, 8 bytes each: addresses of Python's and numpy's objects and functions.
 _SLOTS = ('fallback', 'array_type', 'float64', 'terms_type', 'new_array', 'new_object',
-          'set_item', 'release', 'call')
-_GRAVITY = len(_SLOTS)
-_KEPT = _GRAVITY + 3            # From here: answers, each followed by its arrays.
+          'set_item', 'release', 'call', 'numbers')
+_KEPT = len(_SLOTS)             # From here: answers, each followed by its arrays.
 # A loop that holds the last answer, and the one before, still finds a free one.
 _ANSWERS = 4
 
@@ -220,9 +219,9 @@ class _Entry:
     def compute(self):
         code = self.code
         code.lines.append('compute:')
-        gravity = code.line(f'getelementptr i8, ptr {self.context}, i64 {8 * _GRAVITY}')
         out = [code.line(f'load ptr, ptr {slot}') for slot in self.out]
-        arguments = ', '.join(f'ptr {pointer}' for pointer in [*self.data, gravity, *out])
+        arguments = ', '.join(f'ptr {pointer}' for pointer
+                              in [*self.data, self.slot('numbers'), *out])
         sound = code.line(f'call i1 @{self.quantity.name}({arguments})')
         answer = code.line(f'load ptr, ptr {self.answer}')
         code.do(f'br i1 {sound}, label %answer, label %unsound')
@@ -277,7 +276,7 @@ _SYMBOLS = ('PyType_GenericAlloc', 'PyTuple_SetItem', 'Py_DecRef', 'PyObject_Vec
             'PyCFunction_NewEx', 'PyCapsule_GetPointer')
 
 
-def make_callable(code, name, shapes, fallback, documentation, terms_type, gravity):
+def make_callable(code, name, shapes, fallback, documentation, terms_type, numbers):
     """
     Return a builtin function that computes a quantity of one state.
 
@@ -295,35 +294,50 @@ def make_callable(code, name, shapes, fallback, documentation, terms_type, gravi
         Docstring.
     terms_type : type
         A named tuple for the answers of more than one output.
-    gravity : numpy.ndarray, shape (3,)
-        m/s², base frame.
+    numbers : numpy.ndarray
+        See `packing.pack`.
 
     Returns
     -------
     builtin_function_or_method
 
     """
-    addresses = {
-        'fallback': id(fallback), 'array_type': id(np.ndarray),
-        'float64': id(np.dtype(np.float64)), 'terms_type': id(terms_type),
-        'new_array': _numpy_function(_PYARRAY_NEW),
-        'new_object': _address(_API.PyType_GenericAlloc),
-        'set_item': _address(_API.PyTuple_SetItem), 'release': _address(_API.Py_DecRef),
-        'call': _address(_API.PyObject_Vectorcall)}
-    bits = np.array(gravity, dtype=np.float64).view(np.int64)
+    addresses = {**_addresses(), 'fallback': id(fallback), 'terms_type': id(terms_type),
+                 'numbers': numbers.ctypes.data}
     answers = [_answer(shapes, terms_type) for _ in range(_ANSWERS)]
     kept = [id(item) for answer in answers for item in
             ([answer, *answer] if len(shapes) > 1 else [answer, answer])]
-    context = _Context([*(addresses[slot] for slot in _SLOTS), *bits.tolist(), *kept])
-    text = f'{name}{inspect.signature(fallback)}\n--\n\n{inspect.cleandoc(documentation or "")}'
+    context = _Context([*(addresses[slot] for slot in _SLOTS), *kept])
     method = _MethodDefinition(name.encode(), code.address(f'{name}_call'), _METHOD_FLAGS,
-                               text.encode())
-    context.owned = (code, method, fallback, terms_type, answers)
+                               _text(name, fallback.__func__, documentation))
+    context.owned = (code, method, fallback, terms_type, answers, numbers)
     context.evaluation = fallback.__self__
+    return _new_function()(ctypes.byref(method), context, 'dynamics_node')
+
+
+# Every change of gravity or payload makes a model: what is the same for all is made once.
+@functools.cache
+def _new_function():
     new = _API.PyCFunction_NewEx
     new.argtypes = [ctypes.POINTER(_MethodDefinition), ctypes.py_object, ctypes.py_object]
     new.restype = ctypes.py_object
-    return new(ctypes.byref(method), context, 'dynamics_node')
+    return new
+
+
+@functools.cache
+def _text(name, function, documentation):
+    signature = inspect.signature(function)
+    own = signature.replace(parameters=list(signature.parameters.values())[1:])
+    return f'{name}{own}\n--\n\n{inspect.cleandoc(documentation or "")}'.encode()
+
+
+@functools.cache
+def _addresses():
+    return {'array_type': id(np.ndarray), 'float64': id(np.dtype(np.float64)),
+            'new_array': _numpy_function(_PYARRAY_NEW),
+            'new_object': _address(_API.PyType_GenericAlloc),
+            'set_item': _address(_API.PyTuple_SetItem), 'release': _address(_API.Py_DecRef),
+            'call': _address(_API.PyObject_Vectorcall)}
 
 
 def _answer(shapes, terms_type):

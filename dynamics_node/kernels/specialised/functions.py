@@ -1,10 +1,10 @@
 """
 LLVM functions that compute a quantity: of one state, and of many.
 
-    i1 NAME(q, ..., gravity, out...)                one state; false: the results mean nothing
-    void NAME_batch(q, ..., gravity, out..., B)     B >= lanes states, row after row
+    i1 NAME(q, ..., numbers, out...)                one state; false: the results mean nothing
+    void NAME_batch(q, ..., numbers, out..., B)     B >= lanes states, row after row
 
-All arguments but B are addresses of doubles.
+All arguments but B are addresses of doubles; `numbers` are the robot's, see `packing.pack`.
 
 """
 
@@ -61,8 +61,10 @@ def batch_function(quantity, lanes):
     """
     code = Code(lanes)
     n = quantity.joint_count
-    gravity = [_splat(code, code.line(f'load double, ptr {code.address("%gravity", i)}'))
-               for i in range(3)]
+    # The robot's numbers are the same for all states. Gravity alone is read once, before the loop;
+    # with inertia they are too many to keep, and the compiler takes ten times as long to try.
+    places = _places(quantity)
+    kept = {place: _number(code, place) for place in places} if len(places) <= 3 else {}
     code.do('%last = sub i64 %count, ' + str(lanes))
     code.do('br label %loop')
     code.lines.append('loop:')
@@ -72,8 +74,8 @@ def batch_function(quantity, lanes):
     rows = {name: _row(code, f'%{name}', n) for name in quantity.inputs}
 
     def load(name, index):
-        if name == 'gravity':
-            return gravity[index]
+        if name == 'numbers':
+            return kept[index] if kept else _number(code, index)
         return _gather(code, rows[name], n, index)
 
     name = append_program(code, quantity, load)
@@ -89,8 +91,20 @@ def batch_function(quantity, lanes):
                      code.lines)
 
 
+def _places(quantity):
+    # Which of the robot's numbers the program reads.
+    operations = quantity.program.operations
+    needed = (operations[index] for index in quantity.program.needed(quantity.results()))
+    return sorted(operation.arguments[1] for operation in needed
+                  if operation.name == 'input' and operation.arguments[0] == 'numbers')
+
+
+def _number(code, place):
+    return _splat(code, code.line(f'load double, ptr {code.address("%numbers", place)}'))
+
+
 def _pointers(quantity):
-    names = [*quantity.inputs, 'gravity', *(f'out{i}' for i in range(len(quantity.outputs)))]
+    names = [*quantity.inputs, 'numbers', *(f'out{i}' for i in range(len(quantity.outputs)))]
     return [f'ptr %{name}' for name in names]
 
 

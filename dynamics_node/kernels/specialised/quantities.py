@@ -1,4 +1,11 @@
-"""What is specialised: each quantity as a straight-line program, recorded from `closed_form`."""
+"""
+What is specialised: each quantity as a straight-line program, recorded from `closed_form`.
+
+In the program of a robot, gravity is an input, and all other numbers are constants. With
+`any_inertia`, the inertia of the bodies and of the rotors are inputs too: such a program is
+longer, because none of them is known to be zero, but serves the robot under every load.
+
+"""
 
 from typing import Any, NamedTuple
 
@@ -24,7 +31,7 @@ class Quantity(NamedTuple):
     inputs : tuple of str
         Names of its arguments, arrays of n numbers each.
     program : Program
-        Its inputs are these and 'gravity', 3 numbers.
+        Its inputs are these and 'numbers': those of `packing.pack`, row after row.
     outputs : tuple of numpy.ndarray
         Symbols and floats.
     positive : tuple
@@ -52,60 +59,85 @@ class Quantity(NamedTuple):
         return [*self.positive, *(value for _, value in results)]
 
 
+def input_places(bodies, any_inertia):
+    """
+    Return which of a robot's numbers are inputs of its programs.
+
+    Parameters
+    ----------
+    bodies : int
+        N.
+    any_inertia : bool
+        Whether the inertia of bodies and rotors is among them.
+
+    Returns
+    -------
+    list of tuple of int
+        Row and column in the numbers of `packing.pack`.
+
+    """
+    places = [(bodies, column) for column in range(3)]
+    if any_inertia:
+        columns = [*range(closed_form.INERTIA, closed_form.MULTIPLIER), closed_form.ROTOR]
+        places += [(row, column) for row in range(bodies) for column in columns]
+    return places
+
+
 class _Robot:
     # A robot in symbols: what the formulas of `closed_form` take.
 
-    def __init__(self, structure, numbers):
+    def __init__(self, structure, numbers, any_inertia):
         self.program = Program(MOST_OPERATIONS)
         self.structure = structure
         self.n = closed_form.joint_count(structure)
         self.numbers = numbers.astype(object)
-        self.numbers[-1, :3] = self.inputs('gravity', 3)
+        for row, column in input_places(len(structure), any_inertia):
+            self.numbers[row, column] = self.program.input(
+                'numbers', row * closed_form.WIDTH + column)
         self.work = tuple(array.astype(object)
                           for array in closed_form.workspace(len(structure)))
 
-    def inputs(self, name, count=None):
-        count = self.n if count is None else count
-        return np.array([self.program.input(name, i) for i in range(count)], dtype=object)
+    def inputs(self, name):
+        return np.array([self.program.input(name, i) for i in range(self.n)], dtype=object)
 
     def zeros(self, *shape):
         return np.full(shape, 0.0, dtype=object)
 
 
-def dynamics(structure, numbers):
+def dynamics(structure, numbers, any_inertia=False):
     """Record D, C and G."""
-    robot = _Robot(structure, numbers)
+    robot = _Robot(structure, numbers, any_inertia)
     D, C, G = robot.zeros(robot.n, robot.n), robot.zeros(robot.n, robot.n), robot.zeros(robot.n)
     closed_form.dynamics_of_state(structure, robot.numbers, robot.inputs('q'), robot.inputs('qd'),
                                   robot.work, D, C, G)
     return Quantity('dynamics', robot.n, ('q', 'qd'), robot.program, (D, C, G))
 
 
-def mass_matrix(structure, numbers):
+def mass_matrix(structure, numbers, any_inertia=False):
     """Record D."""
-    robot = _Robot(structure, numbers)
+    robot = _Robot(structure, numbers, any_inertia)
     D = robot.zeros(robot.n, robot.n)
     closed_form.mass_matrix_of_state(structure, robot.numbers, robot.inputs('q'), robot.work, D)
     return Quantity('mass_matrix', robot.n, ('q',), robot.program, (D,))
 
 
-def coriolis_matrix(structure, numbers):
+def coriolis_matrix(structure, numbers, any_inertia=False):
     """Record C."""
-    quantity = dynamics(structure, numbers)
+    quantity = dynamics(structure, numbers, any_inertia)
     return quantity._replace(name='coriolis_matrix', outputs=quantity.outputs[1:2])
 
 
-def gravity_torque(structure, numbers):
+def gravity_torque(structure, numbers, any_inertia=False):
     """Record G."""
-    robot = _Robot(structure, numbers)
+    robot = _Robot(structure, numbers, any_inertia)
     G = robot.zeros(robot.n)
     closed_form.gravity_of_state(structure, robot.numbers, robot.inputs('q'), robot.work, G)
     return Quantity('gravity_torque', robot.n, ('q',), robot.program, (G,))
 
 
-def inverse_dynamics(structure, numbers):
+def inverse_dynamics(structure, numbers, any_inertia=False):
     """Record the efforts of a motion."""
-    robot = _Robot(structure, numbers)
+    robot = _Robot(structure, numbers, any_inertia)
     tau = robot.zeros(robot.n)
     closed_form.inverse_dynamics_of_state(
         structure, robot.numbers, robot.inputs('q'), robot.inputs('qd'), robot.inputs('qdd'),
@@ -113,9 +145,9 @@ def inverse_dynamics(structure, numbers):
     return Quantity('inverse_dynamics', robot.n, ('q', 'qd', 'qdd'), robot.program, (tau,))
 
 
-def forward_dynamics(structure, numbers):
+def forward_dynamics(structure, numbers, any_inertia=False):
     """Record the accelerations that efforts cause, D q̈ = τ - (C q̇ + G)."""
-    robot = _Robot(structure, numbers)
+    robot = _Robot(structure, numbers, any_inertia)
     q, qd, tau = robot.inputs('q'), robot.inputs('qd'), robot.inputs('tau')
     D, qdd = robot.zeros(robot.n, robot.n), robot.zeros(robot.n)
     pivots, margins = robot.zeros(robot.n), robot.zeros(robot.n)

@@ -42,7 +42,7 @@ class RobotCode:
 
     """
 
-    def __init__(self, structure, numbers, object_files):
+    def __init__(self, structure, numbers, object_files, any_inertia=False):
         """
         Load machine code and compare it with the general kernel.
 
@@ -52,6 +52,8 @@ class RobotCode:
             See `packing.pack`.
         object_files : bytes
             As `compile_robot` returns them.
+        any_inertia : bool
+            See `quantities`.
 
         Raises
         ------
@@ -65,14 +67,14 @@ class RobotCode:
             *(f'{name}_batch' for name in _BATCHED)])
         self._batch = {name: self._function(f'{name}_batch', name, None, ctypes.c_int64)
                        for name in _BATCHED}
-        self._compare(structure, numbers)
+        self._compare(structure, _loaded_everywhere(numbers) if any_inertia else numbers)
 
     def _function(self, symbol, name, result, *more):
         inputs, outputs = quantities.SIGNATURES[name]
         pointers = [ctypes.c_void_p] * (len(inputs) + 1 + outputs)
         return ctypes.CFUNCTYPE(result, *pointers, *more)(self.loaded.address(symbol))
 
-    def batch(self, name, gravity, inputs, outputs):
+    def batch(self, name, numbers, inputs, outputs):
         """
         Compute a quantity of many states; other threads run meanwhile.
 
@@ -80,13 +82,13 @@ class RobotCode:
         ----------
         name : str
             'dynamics', 'mass_matrix', 'gravity_torque' or 'inverse_dynamics'.
-        gravity : numpy.ndarray, shape (3,)
-            m/s², base frame.
+        numbers : numpy.ndarray
+            See `packing.pack`: of this robot; with `any_inertia`, under any load.
         inputs, outputs : sequence of numpy.ndarray, shape (B, ...)
             Contiguous, float64; B is at least `lanes`. The outputs are overwritten.
 
         """
-        arrays = [*inputs, gravity, *outputs]
+        arrays = [*inputs, numbers, *outputs]
         self._batch[name](*(array.ctypes.data for array in arrays), len(inputs[0]))
 
     def _compare(self, structure, numbers):
@@ -95,19 +97,36 @@ class RobotCode:
         state = dict(zip(('q', 'qd', 'qdd', 'tau'),
                          np.random.default_rng(1).uniform(-1.0, 1.0, (4, 1, n)), strict=True))
         expected = _general(structure, numbers, state)
-        gravity = numbers[-1, :3].copy()
         for name, (inputs, _) in quantities.SIGNATURES.items():
             arguments = [state[key] for key in inputs]
             outputs = [np.empty_like(array) for array in expected[name]]
             function = self._function(name, name, ctypes.c_bool)
-            pointers = [array.ctypes.data for array in (*arguments, gravity, *outputs)]
+            pointers = [array.ctypes.data for array in (*arguments, numbers, *outputs)]
             if function(*pointers):
                 _demand_agreement(name, outputs, expected[name])
             if name in _BATCHED:
                 many = [np.repeat(array, self.lanes, axis=0) for array in expected[name]]
-                self.batch(name, gravity, [np.repeat(array, self.lanes, axis=0)
+                self.batch(name, numbers, [np.repeat(array, self.lanes, axis=0)
                                            for array in arguments], many)
                 _demand_agreement(name, many, expected[name])
+
+
+def _loaded_everywhere(numbers):
+    # Every body gets a load of its own, of a size that fits the robot: so the comparison looks
+    # at every input, at a mass matrix that is far from singular, and does not depend on whose
+    # payload comes first.
+    size = np.abs(numbers[:-1, closed_form.TRANSLATION:closed_form.AXIS]).max() or 1.0
+    loaded = numbers.copy()
+    body = loaded[:-1]
+    body[:, closed_form.INERTIA] = 1.0
+    body[:, closed_form.INERTIA + 1:closed_form.INERTIA + 4] = size * np.array([0.1, -0.2, 0.3])
+    body[:, closed_form.INERTIA + 4:closed_form.MULTIPLIER] = size**2 * np.array(
+        [1.0, 0.1, -0.2, 1.1, 0.3, 1.2])
+    body[:, closed_form.ROTOR] = size**2
+    factor = np.linspace(1.0, 2.0, len(body))
+    body[:, closed_form.INERTIA:closed_form.MULTIPLIER] *= factor[:, None]
+    body[:, closed_form.ROTOR] *= factor
+    return loaded
 
 
 def _general(structure, numbers, state):
@@ -164,7 +183,7 @@ def _is_below(values, bound):
     return below
 
 
-def compile_robot(structure, numbers):
+def compile_robot(structure, numbers, any_inertia=False):
     """
     Compile the machine code of a robot.
 
@@ -172,6 +191,8 @@ def compile_robot(structure, numbers):
     ----------
     structure, numbers : numpy.ndarray
         See `packing.pack`.
+    any_inertia : bool
+        See `quantities`.
 
     Returns
     -------
@@ -188,7 +209,7 @@ def compile_robot(structure, numbers):
     objects = []
     for record in quantities.ALL:
         try:
-            quantity = record(structure, numbers)
+            quantity = record(structure, numbers, any_inertia)
         except ProgramTooLongError:
             return None
         parts = [*code.declarations(lanes), call.DECLARATIONS,
@@ -209,7 +230,7 @@ def _split(content):
     return objects
 
 
-def from_disk(structure, numbers):
+def from_disk(structure, numbers, any_inertia=False):
     """
     Return a robot's machine code if it was compiled before.
 
@@ -217,6 +238,8 @@ def from_disk(structure, numbers):
     ----------
     structure, numbers : numpy.ndarray
         See `packing.pack`.
+    any_inertia : bool
+        See `quantities`.
 
     Returns
     -------
@@ -228,16 +251,16 @@ def from_disk(structure, numbers):
         If what is there cannot be loaded or computes something else.
 
     """
-    name = store.key(structure, numbers)
+    name = store.key(structure, numbers, any_inertia)
     if name not in _loaded:
         object_files = store.load(name)
         if object_files is None:
             return None
-        _loaded[name] = RobotCode(structure, numbers, object_files)
+        _loaded[name] = RobotCode(structure, numbers, object_files, any_inertia)
     return _loaded[name]
 
 
-def make(structure, numbers):
+def make(structure, numbers, any_inertia=False):
     """
     Return a robot's machine code, from disk or compiled here and now, and kept.
 
@@ -245,6 +268,8 @@ def make(structure, numbers):
     ----------
     structure, numbers : numpy.ndarray
         See `packing.pack`.
+    any_inertia : bool
+        See `quantities`.
 
     Returns
     -------
@@ -258,14 +283,14 @@ def make(structure, numbers):
 
     """
     try:
-        ready = from_disk(structure, numbers)
+        ready = from_disk(structure, numbers, any_inertia)
     except RuntimeError:
         ready = None
     if ready is None:
-        object_files = compile_robot(structure, numbers)
+        object_files = compile_robot(structure, numbers, any_inertia)
         if object_files is None:
             return None
-        name = store.key(structure, numbers)
+        name = store.key(structure, numbers, any_inertia)
         store.save(name, object_files)
-        ready = _loaded[name] = RobotCode(structure, numbers, object_files)
+        ready = _loaded[name] = RobotCode(structure, numbers, object_files, any_inertia)
     return ready

@@ -15,7 +15,9 @@ import re
 import stat
 import tempfile
 
-from . import machine
+import numpy as np
+
+from . import machine, quantities
 
 _MAGIC = b'dynamics_node machine code 2\n'
 # The files that were not used for longest go beyond this: some 30 MB.
@@ -33,7 +35,7 @@ def _read_sources():
 
 # Read when they are imported: a package that is replaced under a running process must not file
 # old code under the name of the new.
-_SOURCES = _read_sources()
+_SOURCES = hashlib.sha256(_read_sources())
 
 
 def folder():
@@ -57,14 +59,16 @@ def folder():
     return (Path(base) if base else Path.home() / '.cache') / 'dynamics_node'
 
 
-def key(structure, numbers):
+def key(structure, numbers, any_inertia=False):
     """
     Return the name of a robot's machine code.
 
     Parameters
     ----------
     structure, numbers : numpy.ndarray
-        See `packing.pack`; gravity does not matter.
+        See `packing.pack`; what is an input of the programs does not matter.
+    any_inertia : bool
+        See `quantities`.
 
     Returns
     -------
@@ -72,11 +76,15 @@ def key(structure, numbers):
         Hexadecimal digits: a hash of robot, formulas, compiler and processor.
 
     """
-    digest = hashlib.sha256(_SOURCES)
+    digest = _SOURCES.copy()
     digest.update(machine.description().encode())
     digest.update(repr(structure.shape).encode())
     digest.update(structure.tobytes())
-    digest.update(numbers[:-1].tobytes())
+    constants = np.array(numbers)
+    for place in quantities.input_places(len(structure), any_inertia):
+        constants[place] = 0.0
+    digest.update(repr(any_inertia).encode())
+    digest.update(constants.tobytes())
     return digest.hexdigest()
 
 

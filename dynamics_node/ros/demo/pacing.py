@@ -24,3 +24,8 @@ class Pacer:
         steps = max(int((now - self._simulated_to) / self._time_step + 1e-6), 0)
         self._simulated_to += steps * self._time_step
         return steps
+
+    @property
+    def simulated_to(self) -> float:
+        """Return the clock reading that the simulation has come to [s]."""
+        return self._simulated_to

@@ -33,6 +33,17 @@ def test_the_code_is_on_disk_when_it_ends(folder):
     assert [path.name for path in folder.iterdir()] == [store.key(*robot)]
 
 
+def test_that_for_any_inertia_is_another(folder):
+    robot = packed(PENDULUM)
+    process = background.start(*robot, True)
+    assert background.start(*robot, True) is process
+    assert background.start(*robot) is not process
+    for started in background._processes.values():
+        assert started.wait(60.0) == 0
+    assert {path.name for path in folder.iterdir()} == {
+        store.key(*robot), store.key(*robot, True)}
+
+
 def test_it_says_when_there_is_none(folder):
     process = background.start(*packed(random_urdf(3, joints=60, with_mimic=False)))
     assert process.wait(60.0) == 1

@@ -229,6 +229,22 @@ def test_a_function_outlives_its_model_and_the_model_is_freed(model, arguments):
     np.testing.assert_allclose(function(arguments[0].tolist()), expected, atol=1e-12)
 
 
+def test_a_function_keeps_the_payload_that_it_was_made_with(model, arguments):
+    carrying = [model.with_payload('link3', mass) for mass in (1.0, 2.0)]
+    assert carrying[0].specialise()
+    functions = [loaded.gravity_torque for loaded in carrying]
+    assert all(inspect.isbuiltin(function) for function in functions)
+    expected = [loaded._evaluation.gravity_torque(arguments[0]) for loaded in carrying]
+    del carrying
+    gc.collect()
+    # Memory that was freed would be taken by these.
+    garbage = [np.full(model._evaluation.packed[1].shape, np.nan) for _ in range(100)]
+    for function, wanted in zip(functions, expected, strict=True):
+        np.testing.assert_allclose(function(arguments[0]), wanted, rtol=0,
+                                   atol=1e-12 * np.abs(wanted).max())
+    assert len(garbage) == 100
+
+
 def test_nothing_is_leaked(model, arguments):
     q, qd, qdd = arguments
     nan, functions = q * np.nan, [getattr(model, name) for name in QUANTITIES]

@@ -21,7 +21,8 @@ def model(request):
 
 @pytest.mark.parametrize('lanes', sorted({2, 4, machine.lanes()}))
 def test_a_batch_of_any_size_is_the_general_kernels(model, lanes):
-    quantity = quantities.dynamics(*pack(model.tree, model.gravity))
+    packed = pack(model.tree, model.gravity)
+    quantity = quantities.dynamics(*packed)
     text = '\n'.join([*declarations(lanes), functions.batch_function(quantity, lanes)])
     loaded = machine.LoadedCode([machine.compile_code(text)], ['dynamics_batch'])
     function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 6, ctypes.c_int64)(
@@ -31,7 +32,7 @@ def test_a_batch_of_any_size_is_the_general_kernels(model, lanes):
         q, qd = rng.uniform(-3.0, 3.0, (2, count, n))
         # A state more than asked for: nobody may write there.
         outputs = [np.full((count + 1, *shape), 7.0) for shape in ((n, n), (n, n), (n,))]
-        arrays = [q, qd, model.gravity, *outputs]
+        arrays = [q, qd, packed[1], *outputs]
         function(*(array.ctypes.data for array in arrays), count)
         for mine, theirs in zip(outputs, model._evaluation.dynamics(q, qd), strict=True):
             np.testing.assert_allclose(mine[:-1], theirs, rtol=0,

@@ -8,14 +8,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from support.carried import random_body
 from support.interpreter import run
 from support.robots import ARM7, PENDULUM, random_state, random_urdf
 
 
 def evaluate(quantity, model, **inputs):
     results = [value for output in quantity.outputs for value in output.flat]
-    numbers = iter(run(quantity.program, results, gravity=model.gravity, **inputs))
-    return [np.array([next(numbers) for _ in output.flat]).reshape(output.shape)
+    numbers = model._evaluation.packed[1].ravel()
+    values = iter(run(quantity.program, results, numbers=numbers, **inputs))
+    return [np.array([next(values) for _ in output.flat]).reshape(output.shape)
             for output in quantity.outputs]
 
 
@@ -24,10 +26,13 @@ def assert_close(actual, expected):
     np.testing.assert_allclose(actual, expected, rtol=0, atol=1e-13 * scale)
 
 
-def hold_against_the_general_kernel(model, rng):
+def hold_against_the_general_kernel(model, rng, recorded_from=None):
+    """Record a robot, or one for any inertia that differs in it, and run it as `model`."""
     q, qd = random_state(rng, model)
     qdd = rng.normal(size=q.size)
-    packed = pack(model.tree, model.gravity)
+    packed = model._evaluation.packed
+    if recorded_from is not None:
+        packed = *recorded_from._evaluation.packed, True
     D, C, G = model._evaluation.dynamics(q, qd)
     tau = model._evaluation.inverse_dynamics(q, qd, qdd)
     for actual, expected in zip(evaluate(quantities.dynamics(*packed), model, q=q, qd=qd),
@@ -51,6 +56,20 @@ def test_every_quantity_on_random_trees(seed):
     hold_against_the_general_kernel(model, np.random.default_rng(seed))
 
 
+@settings(deadline=None, max_examples=settings.default.max_examples // 3)
+@given(st.integers(0, 2**32 - 1))
+def test_every_quantity_for_any_inertia_on_random_trees(seed):
+    rng = np.random.default_rng(seed)
+    text = random_urdf(seed, joints=1 + seed % 3)
+    # Recorded from one robot, run as another: with other masses, a payload and rotors.
+    recorded_from = RobotModel.from_urdf(text)
+    links = recorded_from.link_names
+    model = RobotModel.from_urdf(text.replace('mass value="', 'mass value="1'))
+    model = model.with_gravity(rng.normal(0.0, 6.0, 3)).with_rotor_inertia(rng.uniform())
+    model = model.with_payload(links[int(rng.integers(len(links)))], *random_body(rng))
+    hold_against_the_general_kernel(model, rng, recorded_from)
+
+
 @pytest.mark.parametrize('path', [ARM7, PENDULUM], ids=['arm7', 'pendulum'])
 def test_every_quantity_on_our_robots(path):
     hold_against_the_general_kernel(RobotModel.from_urdf(path), np.random.default_rng(5))
@@ -68,6 +87,21 @@ def test_a_straight_line_is_shorter_than_the_loops():
     # about 6000 operations.
     model = RobotModel.from_urdf(ARM7)
     assert quantities.dynamics(*pack(model.tree, model.gravity)).operation_count < 4500
+
+
+def test_for_any_inertia_no_number_of_the_recorded_robot_is_left():
+    model = RobotModel.from_urdf(ARM7)
+    structure, numbers = pack(model.tree, model.gravity)
+    other = numbers.copy()
+    for place in quantities.input_places(len(structure), True):
+        other[place] = np.nan
+    assert np.isnan(other).sum() == 3 + 11 * len(structure)
+    for record in quantities.ALL:
+        programs = [record(structure, values, True).program for values in (numbers, other)]
+        assert repr([operation.name for operation in programs[0].operations]) == repr(
+            [operation.name for operation in programs[1].operations])
+        assert not any(isinstance(argument, float) and np.isnan(argument)
+                       for operation in programs[1].operations for argument in operation.arguments)
 
 
 def test_robots_with_very_many_joints_are_not_recorded():

@@ -4,6 +4,7 @@ import os
 import stat
 
 from dynamics_node import RobotModel
+from dynamics_node.kernels import closed_form
 from dynamics_node.kernels.packing import pack
 from dynamics_node.kernels.specialised import store
 import pytest
@@ -152,3 +153,20 @@ def test_the_key_knows_the_robot_but_not_gravity():
     assert key != store.key(*pack(pendulum, (0.0, 0.0, -9.81)))
     heavier = RobotModel.from_urdf(ARM7.read_text().replace('mass value="', 'mass value="1')).tree
     assert key != store.key(*pack(heavier, (0.0, 0.0, -9.81)))
+
+
+def test_the_key_for_any_inertia_knows_neither_inertia_nor_rotors_but_all_else():
+    arm = RobotModel.from_urdf(ARM7)
+    structure, numbers = pack(arm.tree, arm.gravity)
+    key = store.key(structure, numbers, True)
+    assert key != store.key(structure, numbers)
+    for column in range(closed_form.WIDTH):
+        other = numbers.copy()
+        other[3, column] += 1.0
+        is_input = (closed_form.INERTIA <= column < closed_form.MULTIPLIER
+                    or column == closed_form.ROTOR)
+        assert (store.key(structure, other, True) == key) == is_input
+        assert store.key(structure, other) != store.key(structure, numbers)
+    tree = structure.copy()
+    tree[-1] += 1
+    assert store.key(tree, numbers, True) != key

@@ -25,3 +25,13 @@ def test_a_clock_that_stands_still_gives_no_steps():
     pacer = Pacer(0.001, 5.0)
     assert pacer.steps_due(5.0) == 0
     assert pacer.steps_due(4.0) == 0
+
+
+def test_it_says_to_which_time_it_has_come():
+    """Whole steps, and a pause that is not caught up is skipped."""
+    pacer = Pacer(0.001, 1.0)
+    assert pacer.simulated_to == 1.0
+    pacer.steps_due(1.0104)
+    assert pacer.simulated_to == pytest.approx(1.010)
+    pacer.steps_due(3.0)
+    assert pacer.simulated_to == pytest.approx(3.0)
