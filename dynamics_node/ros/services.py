@@ -120,7 +120,7 @@ class DynamicsServices(Answering):
             response.position = query.part(query.q)
             if hasattr(response, 'velocity'):
                 response.velocity = query.part(query.qd)
-            return query.message
+            return query.message + query.unseen
         return self.answer(response, fill_all)
 
 

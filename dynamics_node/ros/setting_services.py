@@ -44,7 +44,11 @@ class SettingServices(Answering):
             self.parameters.set({'payload.link': link, 'payload.mass': mass, 'payload.com': com,
                                  'payload.inertia': six})
             over = robot.over_limits(self.parameters.values)
-            return (f'{mass:g} kg on {link}' if mass else 'nothing is carried') + (
+            if not mass:
+                return 'nothing is carried'
+            if robot.model.tree.links[link].body < 0:
+                return f'{mass:g} kg on {link}, which no joint moves: without any effect'
+            return f'{mass:g} kg on {link}' + (
                 f', but gravity torque is above its limit: {over}' if over else '')
         return self._with_payload(self.answer(response, fill))
 

@@ -93,11 +93,19 @@ def test_a_payload_weighs_moves_and_is_gone_without_a_trace(shared):
     assert gravity_torque(shared).tolist() == before.tolist()
 
 
+def test_on_a_link_that_no_joint_moves_it_has_no_effect_and_it_says_so(shared):
+    before = gravity_torque(shared)
+    answer = set_payload(shared, 'base', BOX)
+    assert answer.success
+    assert answer.message == '1.5 kg on base, which no joint moves: without any effect'
+    assert gravity_torque(shared).tolist() == before.tolist()
+
+
 @pytest.mark.parametrize(('link', 'inertia', 'message'), [
     ('nose', BOX, "link: expected one of base, shoulder.*; got 'nose'"),
     ('', BOX, 'link: expected the one that carries the payload, got none: one of base, '),
-    ('hand', Inertia(m=-1.0), 'payload.mass: expected a finite number >= 0, got -1.0'),
-    ('hand', Inertia(m=np.nan), 'payload.mass: expected a finite number >= 0, got nan'),
+    ('hand', Inertia(m=-1.0), 'payload.mass: expected a number >= 0 and <= 100000, got -1.0'),
+    ('hand', Inertia(m=np.nan), 'payload.mass: expected a number >= 0 and <= 100000, got nan'),
     ('hand', Inertia(m=1.0, com=Vector3(x=np.inf)), 'payload.com: expected a finite number'),
     ('hand', Inertia(m=1.0, ixx=0.1, iyy=0.1, izz=0.5), 'inertia is not physical: .*triangle')])
 def test_what_no_robot_can_carry_is_refused_and_the_last_one_stays(shared, link, inertia, message):

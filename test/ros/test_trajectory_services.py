@@ -5,6 +5,8 @@ from dynamics_node import RobotModel
 from geometry_msgs.msg import Point
 import numpy as np
 import pytest
+from rcl_interfaces.msg import Parameter, ParameterValue
+from rcl_interfaces.srv import SetParameters
 from support.carried import with_payload_link
 from support.mujoco_oracle import MujocoOracle
 from support.pinocchio_oracle import PinocchioOracle
@@ -124,6 +126,9 @@ def test_some_joints_move_the_others_stand_where_they_are(client, start):
     whole[:, [2, 1]], rates[:, [2, 1]], changes[:, [2, 1]] = q, qd, qdd
     expected = ARM.inverse_dynamics(whole, rates, changes)[:, [2, 1]]
     np.testing.assert_allclose(efforts(answer), expected, rtol=0, atol=1e-12)
+    assert answer.message.endswith(
+        'taken where last measured, or neutral if never: '
+        + ', '.join(ARM.joint_names[i] for i in (0, 3, 4, 5, 6, 7)))
     # No names: the chosen joints.
     q4, qd4, qdd4 = (values[:, :4] for values in motion(time))
     answer = ask(client, message(time, q4, qd4, qdd4, names=[]))
@@ -207,6 +212,14 @@ def test_the_limits_are_those_of_the_parameter_and_nothing_may_be_in_the_way(cli
     expected = ARM.max_payload(q, 'hand', effort_limits=low)
     assert answer.mass == pytest.approx(float(expected.mass), rel=1e-12)
     assert 0.0 < answer.mass < 0.8 * float(ARM.max_payload(q, 'hand').mass)
+    # What the node sends is limited after its gains.
+    assert client.call(SetParameters, '/dynamics_node/set_parameters', SetParameters.Request(
+        parameters=[Parameter(name='effort_scale', value=ParameterValue(
+            type=8, double_array_value=[1.25] * N))])).results[0].successful
+    answer = largest(client, position=q.tolist(), link='hand')
+    expected = ARM.max_payload(q, 'hand', effort_limits=low / 1.25)
+    assert answer.mass == pytest.approx(float(expected.mass), rel=1e-12)
+    np.testing.assert_allclose(answer.effort_limits, low / 1.25)
     answer = largest(client, position=q.tolist(), link='base')
     assert (answer.mass, answer.limiting_joint) == (np.inf, '')
     assert answer.message.startswith('no effort limit is in the way')
