@@ -124,13 +124,15 @@ class MomentumObserver:
                 momentum, rate = self._balance(q, qd, effort)
             is_known = np.isfinite(momentum).all() and np.isfinite(rate).all()
         if not is_known:
-            self.reset()
-            return np.full(len(self._index), math.nan)
+            return self._unknown()
         dt = time - self._time
         if 0.0 < dt <= self._longest_step:
-            external = (momentum - self._momentum) / dt - 0.5 * (rate + self._rate)      # (34)
-            # What a filter of the gain K makes of a constant input, whatever K dt is.
-            estimate = self.estimate - math.expm1(-self.gain * dt) * (external - self.estimate)
+            with np.errstate(over='ignore', invalid='ignore'):
+                external = (momentum - self._momentum) / dt - 0.5 * (rate + self._rate)  # (34)
+                # What a filter of the gain K makes of a constant input, whatever K dt is.
+                estimate = self.estimate - math.expm1(-self.gain * dt) * (external - self.estimate)
+            if not np.isfinite(estimate).all():
+                return self._unknown()
             estimate.flags.writeable = False
             self.estimate = estimate
             self.observed += dt
@@ -138,6 +140,10 @@ class MomentumObserver:
             self._start_from_zero()
         self._time, self._momentum, self._rate = time, momentum, rate
         return self.estimate
+
+    def _unknown(self):
+        self.reset()
+        return np.full(len(self._index), math.nan)
 
     def _start_from_zero(self):
         self.observed = 0.0

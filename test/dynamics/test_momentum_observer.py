@@ -244,6 +244,14 @@ def test_what_is_not_finite_is_not_remembered(carriage, state):
     assert carriage.observed == 0.0
 
 
+def test_an_estimate_that_is_not_finite_is_not_remembered(carriage):
+    # The momentum is a number; what changes it within a nanosecond is none.
+    assert np.isnan(carriage.update(0.1 + 1e-9, [0.0], [1e300], [0.0])).all()
+    assert np.isfinite(carriage.estimate).all() and carriage.observed == 0.0
+    assert carriage.update(0.11, [0.0], [0.0], [0.0]) == 0.0
+    assert carriage.update(0.12, [0.0], [0.0], [0.0]) == 0.0
+
+
 def test_an_estimate_that_was_handed_out_is_never_changed(carriage):
     before = carriage.estimate
     kept = before.copy()
