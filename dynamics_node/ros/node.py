@@ -153,6 +153,8 @@ class DynamicsNode(Node):
     def _reconfigured(self, values, before):
         if self._robot is not None:
             self._robot.configure(values, before)
+        else:
+            self.source.offer_again()  # it may have been refused for a parameter
         self._configure(values)
 
     def _configure(self, values):
