@@ -72,7 +72,7 @@ class MomentumObserver:
         self.joint_names = selection.names
         self.gain = _positive('gain', gain, '1/s')
         self._longest_step = _positive('longest_step', longest_step, 's')
-        self._robot = robot
+        self._robot, self._joint_names = robot, tuple(robot.joint_names)
         self.estimate = np.zeros(len(selection.names))
         self._index = selection.index
         self._is_other = np.ones(len(robot.joint_names), dtype=bool)
@@ -82,8 +82,35 @@ class MomentumObserver:
     def reset(self):
         """Forget the last state and the estimate; the next state begins anew."""
         self._time = math.nan
-        self._momentum = self._rate = None
+        self._state = self._momentum = self._rate = None
         self._start_from_zero()
+
+    def follow(self, robot):
+        """
+        Go on with another payload, gravity, friction or rotor inertia; the estimate stays.
+
+        What the models say differently goes into the estimate or out of it with its lag, and not
+        at once: on a base that tilts gravity may change with every state.
+
+        Parameters
+        ----------
+        robot : RobotModel
+            With the same joints in the same order.
+
+        Raises
+        ------
+        ArgumentError
+            If it has other joints.
+
+        """
+        if tuple(robot.joint_names) != self._joint_names:
+            raise ArgumentError(f'robot: expected the joints {", ".join(self._joint_names)}, got '
+                                f'{", ".join(robot.joint_names)}: make another observer')
+        self._robot = robot
+        if self._state is not None:
+            # What the other model makes of the last state: a momentum that only the models tell
+            # apart is no push.
+            self._momentum, self._rate = self._balance(*self._state)
 
     def update(self, time, q, qd, effort):
         """
@@ -120,24 +147,30 @@ class MomentumObserver:
         time = float(time)
         is_known = all(np.isfinite(value).all() for value in (time, q, qd, effort))
         if is_known:
-            with np.errstate(over='ignore', invalid='ignore'):  # however large the numbers are
-                momentum, rate = self._balance(q, qd, effort)
+            momentum, rate = self._balance(q, qd, effort)
             is_known = np.isfinite(momentum).all() and np.isfinite(rate).all()
         if not is_known:
-            self.reset()
-            return np.full(len(self._index), math.nan)
+            return self._unknown()
         dt = time - self._time
         if 0.0 < dt <= self._longest_step:
-            external = (momentum - self._momentum) / dt - 0.5 * (rate + self._rate)      # (34)
-            # What a filter of the gain K makes of a constant input, whatever K dt is.
-            estimate = self.estimate - math.expm1(-self.gain * dt) * (external - self.estimate)
+            with np.errstate(over='ignore', invalid='ignore'):
+                external = (momentum - self._momentum) / dt - 0.5 * (rate + self._rate)  # (34)
+                # What a filter of the gain K makes of a constant input, whatever K dt is.
+                estimate = self.estimate - math.expm1(-self.gain * dt) * (external - self.estimate)
+            if not np.isfinite(estimate).all():
+                return self._unknown()
             estimate.flags.writeable = False
             self.estimate = estimate
             self.observed += dt
         else:
             self._start_from_zero()
-        self._time, self._momentum, self._rate = time, momentum, rate
+        self._time, self._state = time, (q, qd, effort)
+        self._momentum, self._rate = momentum, rate
         return self.estimate
+
+    def _unknown(self):
+        self.reset()
+        return np.full(len(self._index), math.nan)
 
     def _start_from_zero(self):
         self.observed = 0.0
@@ -146,7 +179,8 @@ class MomentumObserver:
 
     def _checked(self, q, qd, effort):
         n, m = len(self._is_other), len(self._index)
-        q, qd, effort = (np.asarray(value, dtype=float) for value in (q, qd, effort))
+        # Copies, because the last state is remembered.
+        q, qd, effort = (np.array(value, dtype=float) for value in (q, qd, effort))
         for name, value, count in (('q', q, n), ('qd', qd, n), ('effort', effort, m)):
             if value.shape != (count,):
                 raise ArgumentError(f'{name}: expected shape ({count},), one state of '
@@ -157,11 +191,12 @@ class MomentumObserver:
     def _balance(self, q, qd, effort):
         # Rows of the whole robot, not its sub-blocks: (33) holds row by row, also where joints
         # that were not chosen move.
-        terms = self._robot.dynamics(q, qd)
         rows = self._index
-        momentum = terms.mass_matrix[rows] @ qd
-        known = qd @ terms.coriolis_matrix[:, rows] - terms.gravity_torque[rows]         # (33)
-        return momentum, effort + known - self._robot.friction_torque(qd)[rows]
+        with np.errstate(over='ignore', invalid='ignore'):  # however large the numbers are
+            terms = self._robot.dynamics(q, qd)
+            momentum = terms.mass_matrix[rows] @ qd
+            known = qd @ terms.coriolis_matrix[:, rows] - terms.gravity_torque[rows]     # (33)
+            return momentum, effort + known - self._robot.friction_torque(qd)[rows]
 
 
 def _positive(name, value, unit):

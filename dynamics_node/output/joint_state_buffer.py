@@ -291,6 +291,11 @@ class JointStateBuffer:
         return min((self._stamp[i] for i in self._needed), default=0)
 
     @property
+    def newest_measured(self):
+        """When the newest of the needed joints was measured, ns; 0 where that is not said."""
+        return max((self._stamp[i] for i in self._needed), default=0)
+
+    @property
     def is_complete(self):
         """Whether every needed joint has been measured, however long ago."""
         return self._oldest > -math.inf

@@ -52,3 +52,9 @@ class DescriptionSource:
         if self._on_description(message.data.encode(errors='surrogatepass'),
                                 f'topic {self.topic}'):
             self._last = message.data
+
+    def offer_again(self):
+        """Deliver the newest text once more: what it was refused for may have changed."""
+        if self._last is not None:
+            text, self._last = self._last, None
+            self._received(String(data=text))

@@ -10,11 +10,14 @@ from .messages import to_field
 from .qos import NO_EVENTS, RESULT
 from .throttle import Throttle
 from ..dynamics import MomentumObserver
+from ..dynamics.momentum_observer import LONGEST_STEP
 from ..output import EffortAtRest
 
 # The shortest time between two warnings about the same thing, s.
 WARN_EVERY = 10.0
 _SECOND = 1_000_000_000
+# So many begins in a row are no gap, but states that are too rare.
+MAX_BEGINS = 3
 _TO_DO = {
     'velocity': 'give the joints a velocity state interface in the <ros2_control> of the URDF',
     'effort': 'give the joints an effort state interface in the <ros2_control> of the URDF, if '
@@ -48,7 +51,7 @@ class ExternalTorque:
         self._parameters = parameters
         self._publisher = node.create_publisher(JointState, '~/external_torque', RESULT,
                                                 event_callbacks=NO_EVENTS)
-        self._warnings = {what: Throttle(WARN_EVERY) for what in (*_TO_DO, 'doubt')}
+        self._warnings = {what: Throttle(WARN_EVERY) for what in (*_TO_DO, 'rate', 'doubt')}
         self._watch: _Watch | None = None
         self._missing = ''
         self.is_on = False
@@ -86,9 +89,9 @@ class ExternalTorque:
         gain, watch = self._parameters['external_torque.gain'], self._watch
         if watch is None or not watch.fits(robot, gain):
             watch = self._watch = _Watch(robot, gain, time, watch)
-        elif time == watch.time:
+        elif watch.time <= time <= watch.newest:
             return  # a part of a state: the joints that are older have not come yet
-        watch.time = time
+        watch.take(time, robot)
         buffer, index = robot.buffer, robot.selection.index
         q, qd, effort = buffer.position, buffer.velocity, buffer.effort[index]
         if self._is_unknown(robot, velocity=qd[index], effort=effort):
@@ -99,7 +102,9 @@ class ExternalTorque:
             self._warn_of(watch.at_rest.doubt)
         if watch.observer.observed == 0.0:
             self._begun += 1
+            self._notice_rare(watch)
         elif all(map(math.isfinite, estimate.tolist())):
+            watch.begins = 0
             self._publish(robot, time, q[index], qd[index], estimate)
 
     def health(self):
@@ -131,6 +136,14 @@ class ExternalTorque:
         self._missing = ''
         return False
 
+    def _notice_rare(self, watch):
+        watch.begins += 1
+        if watch.begins >= MAX_BEGINS:
+            self._missing = f'joint states come more than {LONGEST_STEP:g} s apart'
+            if self._warnings['rate'].is_due():
+                self.logger.warning(f'{self._missing}: ~/external_torque is not published; raise '
+                                    'the rate of the joint state broadcaster')
+
     def _warn_of(self, doubt):
         if doubt and self._warnings['doubt'].is_due():
             self.logger.warning(
@@ -156,27 +169,38 @@ class _Watch:
     ----------
     observer : MomentumObserver
     at_rest : EffortAtRest
-    time : int
-        Of the newest state, ns.
+    time, newest : int
+        Of the newest state, ns: when the oldest and the newest of its joints was measured.
+    begins : int
+        How often in a row the observer has begun anew.
 
     """
 
     def __init__(self, robot, gain, time, before):
         """Begin to observe at a time, ns; `before` is the watch that ends."""
-        # What must stay as it is: a payload, another gravity or friction is another model, and a
-        # jump of the arm or of the clock is a break in what was measured.
-        self._robot, self._what = robot, (robot.model, robot.buffer.breaks, gain)
+        # What must stay as it is: a jump of the arm or of the clock is a break in what was
+        # measured.
+        self._robot, self._what = robot, (robot.buffer.breaks, gain)
+        self._model = robot.model
         self.observer = MomentumObserver(robot.model, gain, robot.joint_names)
         self.at_rest = EffortAtRest(robot.joint_names,
                                     robot.model.effort_limits[robot.selection.index])
         if before is not None and before.at_rest.names == self.at_rest.names:
             self.at_rest.doubt = before.at_rest.doubt
         # Seconds since then have digits enough, those since 1970 have not.
-        self._epoch = self.time = time
+        self._epoch = self.time = self.newest = time
+        self.begins = 0
 
     def fits(self, robot, gain):
         """Tell whether it may go on with a robot as it is now, and a gain."""
-        return self._robot is robot and self._what == (robot.model, robot.buffer.breaks, gain)
+        return self._robot is robot and self._what == (robot.buffer.breaks, gain)
+
+    def take(self, time, robot):
+        """Go on to a state, ns, and to the model in force: the payload or gravity may be new."""
+        self.time, self.newest = time, max(time, robot.buffer.newest_measured)
+        if robot.model is not self._model:
+            self._model = robot.model
+            self.observer.follow(robot.model)
 
     @property
     def seconds(self):

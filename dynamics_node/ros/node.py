@@ -3,10 +3,10 @@
 import math
 import time
 
-import numpy as np
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
+from .change_check import check_change
 from .command_output import CommandOutput
 from .compensation import Compensation
 from .description_source import DescriptionSource
@@ -150,30 +150,14 @@ class DynamicsNode(Node):
             return
         self._check_lengths(values, robot)
         model = configured(robot, values, before)
-        if not self.output.channel.machine.is_on:
-            return
-        if robot.unlimited_joints(values['effort_limits']):
-            raise ParameterError('effort_limits: expected a limit for every joint while output '
-                                 'is on, got none for '
-                                 + ', '.join(robot.unlimited_joints(values['effort_limits'])))
-        if np.dot(values['gravity'], before['gravity']) < 0.0:
-            # What an accelerometer at rest says is the opposite of gravity.
-            raise ParameterError('gravity: expected a vector that points to the earth, got one '
-                                 'that is turned by more than 90 degrees against the one in '
-                                 'force: while output is on, this would throw the arm')
-        if any(before['gravity']) and not any(values['gravity']):
-            raise ParameterError('gravity: expected a vector that points to the earth, got zero: '
-                                 'while output is on, the arm would fall')
-        changes_effort = (model is not robot.model
-                          or values['effort_scale'] != before['effort_scale'])
-        over = robot.over_limits(values, model) if changes_effort else ''
-        if over and not robot.over_limits(before):
-            raise ParameterError('while output is on, expected what the arm can hold, but its '
-                                 f'gravity torque would be above the limit: {over}')
+        if self.output.channel.machine.is_on:
+            check_change(robot, model, values, before)
 
     def _reconfigured(self, values, before):
         if self._robot is not None:
             self._robot.configure(values, before)
+        else:
+            self.source.offer_again()  # it may have been refused for a parameter
         self._configure(values)
 
     def _configure(self, values):

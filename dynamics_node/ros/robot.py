@@ -153,7 +153,7 @@ class Robot:
         """
         return np.array(given) if given else self.model.effort_limits[self.selection.index]
 
-    def over_limits(self, values, model=None):
+    def over_limits(self, values, model=None, before=None):
         """
         Say which chosen joints cannot hold the robot still at the newest state.
 
@@ -163,20 +163,31 @@ class Robot:
             Of the parameters.
         model : RobotModel, optional
             Instead of the one in force.
+        before : dict of str to Any, optional
+            Parameters of the model in force: a joint that stays at its limit, on the same side,
+            does not count.
 
         Returns
         -------
         str
-            Joint, gravity torque and limit each; '' if there is none, or no state.
+            Joint, gravity torque and limit each; '' if there is none, or no state. A torque
+            that is no number counts as one above every limit.
 
         """
         if not self.buffer.is_complete:
             return ''
-        G = (model or self.model).gravity_torque(self.buffer.position)[self.selection.index]
-        G = G * (values['effort_scale'] or 1.0)
+        G = self._scaled_gravity_torque(model or self.model, values)
         limits = self.effort_limits(values['effort_limits'])
-        return '; '.join(f'{name}: {effort:.6g}, limit {limit:.6g}' for name, effort, limit in zip(
-            self.joint_names, G, limits, strict=True) if abs(effort) > limit)
+        is_over = (np.abs(G) > limits) | ~np.isfinite(G)
+        if before is not None:
+            was = self._scaled_gravity_torque(self.model, before)
+            is_over &= ~((np.abs(was) > limits) & (np.sign(was) == np.sign(G)))
+        return '; '.join(f'{self.joint_names[i]}: {G[i]:.6g}, limit {limits[i]:.6g}'
+                         for i in np.flatnonzero(is_over))
+
+    def _scaled_gravity_torque(self, model, values):
+        G = model.gravity_torque(self.buffer.position)[self.selection.index]
+        return G * (values['effort_scale'] or 1.0)
 
     def unlimited_joints(self, given):
         """Return the names of the chosen joints that have no effort limit, a list of str."""

@@ -227,6 +227,43 @@ def test_the_longest_step_may_be_chosen():
     assert observer.update(1.5, [1.0], [1.0], [0.0])[0] > 0.0
 
 
+@pytest.mark.parametrize('is_pushed', [True, False], ids=['pushed', 'not pushed'])
+def test_another_model_makes_no_push_and_hides_none(is_pushed):
+    # What it carries is known from the middle on; what it knew before was another payload.
+    plain, motion = laden()
+    right = plain.with_payload('hand', **LOAD).with_friction(*FRICTION).with_rotor_inertia(ROTORS)
+    effort = motion.effort - (5.0 if is_pushed else 0.0)
+    observer = MomentumObserver(right, GAIN)
+    for i, (t, q, qd) in enumerate(zip(motion.time, motion.q, motion.qd, strict=True)):
+        # Another gravity that makes no difference to the momentum, and back, every other state.
+        observer.follow(right.with_gravity((0.0, 1e-6 * (i % 2), -9.81)))
+        observer.update(t, q, qd, effort[i])
+    expected = 5.0 if is_pushed else 0.0
+    assert observer.estimate == pytest.approx(np.full(len(observer.estimate), expected), abs=0.02)
+    assert observer.observed == pytest.approx(motion.time[-1] - motion.time[0])
+    before = observer.estimate
+    observer.follow(right.with_payload('hand', 3.0))
+    assert observer.estimate is before
+    # The moment at which the momentum of the moving arm is another one is no blow.
+    observer.follow(right)
+    blow = right.mass_matrix(motion.q[-1]) - plain.mass_matrix(motion.q[-1])
+    assert np.abs(GAIN * blow @ motion.qd[-1]).max() > 20.0
+    observer = MomentumObserver(plain, GAIN)
+    estimates = []
+    for i, (t, q, qd) in enumerate(zip(motion.time, motion.q, motion.qd, strict=True)):
+        if i == len(motion.time) // 2:
+            wrong = np.abs(estimates).max()
+            observer.follow(right)
+        estimates.append(observer.update(t, q, qd, motion.effort[i]))
+    assert np.abs(estimates).max() < 1.05 * wrong
+    assert np.abs(estimates[-1]).max() < 0.1 * wrong
+
+
+def test_a_model_of_other_joints_is_refused(carriage):
+    with pytest.raises(ArgumentError, match='expected the joints slide, got hinge'):
+        carriage.follow(RobotModel.from_urdf(PENDULUM))
+
+
 def test_it_begins_anew_when_it_is_told_to(carriage):
     carriage.reset()
     assert carriage.estimate == 0.0 and carriage.observed == 0.0
@@ -242,6 +279,14 @@ def test_what_is_not_finite_is_not_remembered(carriage, state):
     assert np.isnan(carriage.update(*state)).all()
     assert carriage.update(0.12, [0.0], [0.0], [0.0]) == 0.0
     assert carriage.observed == 0.0
+
+
+def test_an_estimate_that_is_not_finite_is_not_remembered(carriage):
+    # The momentum is a number; what changes it within a nanosecond is none.
+    assert np.isnan(carriage.update(0.1 + 1e-9, [0.0], [1e300], [0.0])).all()
+    assert np.isfinite(carriage.estimate).all() and carriage.observed == 0.0
+    assert carriage.update(0.11, [0.0], [0.0], [0.0]) == 0.0
+    assert carriage.update(0.12, [0.0], [0.0], [0.0]) == 0.0
 
 
 def test_an_estimate_that_was_handed_out_is_never_changed(carriage):

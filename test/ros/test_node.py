@@ -9,7 +9,7 @@ from dynamics_node.ros.node import DynamicsNode
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import SetParametersAtomically
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter as RosParameter
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
@@ -156,6 +156,31 @@ def test_the_description_comes_from_the_topic_and_a_bad_one_is_survived(client, 
     torques.clear()
     client.until(lambda: torques, lambda: client.publish(['hinge'], [0.0]))
     assert torques[-1].effort[0] == pytest.approx(0.5 * 3 * 0.7 * 9.81)
+
+
+def test_a_description_refused_for_a_parameter_is_taken_when_the_parameter_is_right(client, start):
+    start(**{'payload.link': 'nose', 'payload.mass': 1.0})
+    statuses = client.listen(DiagnosticArray, '/diagnostics')
+    client.description.publish(String(data=ARM7.read_text()))
+    client.until(lambda: statuses)
+    client.during(1.0)
+
+    def put(link):
+        [result] = client.call(SetParameters, '/dynamics_node/set_parameters',
+                               SetParameters.Request(parameters=[Parameter(
+                                   name='payload.link', value=ParameterValue(
+                                       type=ParameterType.PARAMETER_STRING,
+                                       string_value=link))])).results
+        assert result.successful, result.reason
+
+    def model():
+        return next(iter(status.message for message in statuses[-1:] for status in message.status
+                         if status.name == 'dynamics_node: model'), '')
+    put('chin')
+    statuses.clear()
+    client.until(lambda: 'no robot description' in model())
+    put('hand')
+    client.until(lambda: model() == 'ok')
 
 
 def test_the_description_may_be_a_parameter_of_a_file(client, start, tmp_path):

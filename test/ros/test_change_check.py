@@ -1,0 +1,79 @@
+"""What may change while the output is on, and what would throw or drop the arm."""
+
+from dynamics_node import RobotModel
+from dynamics_node.ros.change_check import check_change
+from dynamics_node.ros.model_settings import configured
+from dynamics_node.ros.parameter_table import check_all, ParameterError
+from dynamics_node.ros.robot import Robot
+import pytest
+from support.robots import ARM7, PENDULUM
+
+NO_LIMIT = PENDULUM.read_text().replace('effort="20"', '')
+N = 8
+DOWN = (0.0, 0.0, -9.81)
+Q = [0.02, 0.8, 0.02, 0.8, 0.02, 0.02, 0.02, 0.01]
+
+
+def payload(mass, link='hand', com=(0.03, 0.0, 0.0)):
+    """Return the parameters of a payload."""
+    return {'payload.link': link, 'payload.mass': mass, 'payload.com': com}
+
+
+def change(before, after, urdf=ARM7):
+    """Go from parameters to others, given what differs from the defaults."""
+    robot = Robot(RobotModel.from_urdf(urdf), ())
+    before = check_all(before)
+    robot.configure(before)
+    robot.buffer.update(0.0, list(robot.joint_names), Q[:len(robot.joint_names)])
+    values = check_all(after)
+    check_change(robot, configured(robot, values, before), values, before)
+
+
+LIMITS = {'effort_limits': [1.0] * N}
+SCALED = {'effort_scale': [4.0] * N}
+
+
+@pytest.mark.parametrize('before, after', [
+    ({}, payload(1.0)), (payload(1.0), {}),
+    ({}, LIMITS), (payload(1.0), LIMITS | payload(1.0)),
+    # Stuck at its limit it is anyway: a base that tilts must be followed, and less be possible.
+    (payload(500.0), payload(499.0)), (payload(500.0), {}), (payload(500.0), payload(501.0)),
+    ({}, {'gravity': (6.9, 0.0, -6.9)}), ({'gravity': (0.0,) * 3}, {'gravity': (0.0,) * 3}),
+    ({}, {'effort_scale': [1.1] * N}), (SCALED, {}),
+], ids=str)
+def test_what_the_arm_can_follow_is_possible(before, after):
+    change(before, after)
+
+
+@pytest.mark.parametrize('before, after, message', [
+    ({}, payload(500.0), 'above the limit: shoulder_pitch'),
+    # A joint at its limit is no excuse for the others.
+    ({'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2},
+     {'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2} | payload(500.0), 'shoulder_pitch'),
+    # Nor is what turns round there: the effort would go from one limit to the other.
+    (payload(500.0), payload(500.0, com=(0.0, 0.0, -3.0)), 'above the limit: shoulder_pitch: 109'),
+    ({}, payload(1e308, com=(0.0, 0.0, 0.06)), 'above the limit: .*shoulder_pitch: nan'),
+    ({}, SCALED, 'above the limit: shoulder_pitch'),
+    ({}, {'gravity': (0.0, 0.0, 9.81)}, 'by 90 degrees or more'),
+    ({}, {'gravity': (9.81, 0.0, 0.0)}, 'by 90 degrees or more'),
+    ({}, {'gravity': (0.0, 0.0, 0.0)}, 'not zero while output is on'),
+    ({'gravity': (0.0,) * 3}, {'gravity': DOWN}, 'not zero while output is on'),
+], ids=str)
+@pytest.mark.filterwarnings('ignore:overflow')  # numbers that no payload has
+def test_what_would_throw_or_drop_it_is_refused(before, after, message):
+    with pytest.raises(ParameterError, match=message):
+        change(before, after)
+
+
+def test_a_joint_keeps_its_limit():
+    change({'effort_limits': [5.0]}, {'effort_limits': [4.0]}, NO_LIMIT)
+    with pytest.raises(ParameterError, match='got none for hinge'):
+        change({'effort_limits': [5.0]}, {}, NO_LIMIT)
+
+
+def test_the_payload_of_the_test_turns_the_torque_round():
+    # So that the case above is what it says.
+    model = RobotModel.from_urdf(ARM7)
+    G = [model.with_payload('hand', 500.0, com).gravity_torque(Q)[1]
+         for com in ((0.03, 0.0, 0.0), (0.0, 0.0, -3.0))]
+    assert G[0] < -90.0 and G[1] > 90.0
