@@ -122,7 +122,7 @@ class Parameters:
 
     def _check(self, ros_parameters):
         try:
-            self._merged(ros_parameters)
+            self._further_check(self._merged(ros_parameters))
         except Exception as error:  # whatever it is, nothing has been changed yet
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
@@ -131,6 +131,7 @@ class Parameters:
     def _take(self, ros_parameters):
         if not any(item.name in self.values for item in ros_parameters):
             return
+        # Just now they have passed `_check`.
         before, self.values = self.values, self._merged(ros_parameters)
         for name, value in self.values.items():
             # Somebody may say where the earth is a hundred times a second.
@@ -142,9 +143,7 @@ class Parameters:
         values = dict(self.values)
         values.update((item.name, item.value) for item in ros_parameters
                       if item.name in values)
-        checked = check_all(values)
-        self._further_check(checked)
-        return checked
+        return check_all(values)
 
 
 def _descriptor(parameter, read_only=False):

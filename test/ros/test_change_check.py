@@ -84,5 +84,5 @@ def test_a_torque_that_is_no_number_is_above_every_limit():
     robot.buffer.update(0.0, list(robot.joint_names), Q)
     with np.errstate(over='ignore'):
         heavy = robot.model.with_payload('hand', 1e308, (0.0, 0.0, 0.06))
-    with pytest.raises(ParameterError, match='above the limit: .*shoulder_pitch: nan'):
+    with pytest.raises(ParameterError, match=r'above the limit: .*shoulder_pitch: nan'):
         check_change(robot, heavy, values, values)
