@@ -33,6 +33,14 @@ def test_every_fault_names_tests_that_exist(text):
             assert re.search(rf'^def {name}\(', source, re.MULTILINE), f'{path}::{name}'
 
 
+def test_all_tests_that_are_named_exist(text):
+    named = set(re.findall(r'`([\w/]+\.py)::(\w+)`', text))
+    assert len(named) > 60
+    for path, name in named:
+        source = (TESTS / path).read_text(encoding='utf-8')
+        assert re.search(rf'^def {name}\(', source, re.MULTILINE), f'{path}::{name}'
+
+
 def test_the_numbers_are_those_of_the_code(text):
     said = [(words, float(value)) for words, value, _ in NUMBER.findall(text)]
     expected = [

@@ -325,9 +325,9 @@ class JointStateBuffer:
         """
         return now - max(self._oldest, self._forgotten)
 
-    def stale_joints(self, now, timeout):
+    def stale_joints(self, now, timeout, joints=None):
         """
-        Return which needed joints are missing.
+        Return which needed joints are missing, or which of some others.
 
         Parameters
         ----------
@@ -335,13 +335,16 @@ class JointStateBuffer:
             The same steady clock, s.
         timeout : float
             Age that is still fresh, s.
+        joints : sequence of int, optional
+            Places of joints, instead of those that are needed.
 
         Returns
         -------
         list of str
 
         """
-        return [self._names[i] for i in self._needed if now - self._time[i] > timeout]
+        return [self._names[i] for i in (self._needed if joints is None else joints)
+                if now - self._time[i] > timeout]
 
 
 def too_many_names(count):

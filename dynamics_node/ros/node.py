@@ -78,8 +78,11 @@ class DynamicsNode(Node):
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.states,
                                         self.output, self._external_torque)
         self._compensation = Compensation(self, self.parameters)
-        self._answering = [kind(self, self._get_robot, self.parameters) for kind in (
-            DynamicsServices, SettingServices, TrajectoryServices)]
+        self._answering = [
+            DynamicsServices(self, self._get_robot, self.parameters),
+            SettingServices(self, self._get_robot, self.parameters),
+            TrajectoryServices(self, self._get_robot, self.parameters,
+                               lambda: self.output.channel.machine.is_on)]
         self._look_for_rivals = self.create_timer(
             RIVALS_EVERY, self._stop_for_rivals, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._look_for_rivals.cancel()

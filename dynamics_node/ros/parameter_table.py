@@ -189,7 +189,8 @@ PARAMETERS = (
     Parameter('rotor_inertia', DOUBLES, (), 'Inertia of the rotors as the joints feel it, with '
               'the square of the gear ratio, kg m² or kg, per joint. Empty: 0', low=0.0),
     Parameter('payload.link', TEXT, '', 'Link that carries the payload'),
-    Parameter('payload.mass', DOUBLE, 0.0, 'Mass of the payload, kg; 0: there is none', low=0.0),
+    Parameter('payload.mass', DOUBLE, 0.0, 'Mass of the payload, kg; 0: there is none', low=0.0,
+              high=1e5),
     Parameter('payload.com', DOUBLES, (0.0, 0.0, 0.0), 'Centre of mass of the payload in the '
               'frame of its link, m', length=3),
     Parameter('payload.inertia', DOUBLES, (0.0,) * 6, 'Inertia tensor of the payload about its '

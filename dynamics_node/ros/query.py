@@ -21,6 +21,8 @@ class Query:
         State of all joints of the model; joints that are not wanted stand still.
     message : str
         Where this state comes from, for people.
+    unseen : str
+        What to append to it about joints that were not asked for.
 
     """
 
@@ -50,6 +52,7 @@ class Query:
             self.index = selection.index[order]
         else:
             self.names, self.index = list(selection.names), selection.index
+        self.unseen = robot.unseen_others(self.index, time.monotonic(), timeout)
         self.has_all_in_order = robot.has_all_in_order and not request.joint_names
         if len(request.position):
             self.q = robot.buffer.position

@@ -112,6 +112,30 @@ class Robot:
                 'joint_states, or give positions in the request')
         return self.buffer.position
 
+    def unseen_others(self, index, now, timeout):
+        """
+        Say which of the joints that somebody did not speak of are not where they are seen to be.
+
+        Parameters
+        ----------
+        index : numpy.ndarray of int
+            Places of the joints that were spoken of.
+        now : float
+            Steady clock, s.
+        timeout : float
+            Age that is still fresh, s.
+
+        Returns
+        -------
+        str
+            To append to a message; '' if there is none.
+
+        """
+        others = np.setdiff1d(np.arange(len(self.model.joint_names)), index)
+        stale = self.buffer.stale_joints(now, timeout, others.tolist())
+        return ('; taken where last measured, or neutral if never: ' + ', '.join(stale)
+                if stale else '')
+
     def effort_limits(self, given):
         """
         Return the effort limits of the chosen joints.

@@ -16,6 +16,7 @@ from .answering import Answering
 from .guard import guarded_service
 from .query import finite, Query
 from ..dynamics import forward_dynamics_held
+from ..errors import ArgumentError
 
 
 class DynamicsServices(Answering):
@@ -102,7 +103,9 @@ class DynamicsServices(Answering):
         """Answer the Jacobian of a point of a link, and where they are."""
         def fill(query):
             model, link = query.model, request.link or query.model.tip_link
-            point = finite(np.array([request.point.x, request.point.y, request.point.z]))
+            point = np.array([request.point.x, request.point.y, request.point.z])
+            if not np.isfinite(point).all():
+                raise ArgumentError(f'point: expected finite numbers, m, got {point.tolist()}')
             response.jacobian = query.columns(model.jacobian(query.q, link, point))
             response.link, response.frame_id = link, model.tree.root
             response.pose = _pose(model.link_pose(query.q, link), point)
@@ -117,7 +120,7 @@ class DynamicsServices(Answering):
             response.position = query.part(query.q)
             if hasattr(response, 'velocity'):
                 response.velocity = query.part(query.qd)
-            return query.message
+            return query.message + query.unseen
         return self.answer(response, fill_all)
 
 

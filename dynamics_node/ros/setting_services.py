@@ -44,7 +44,11 @@ class SettingServices(Answering):
             self.parameters.set({'payload.link': link, 'payload.mass': mass, 'payload.com': com,
                                  'payload.inertia': six})
             over = robot.over_limits(self.parameters.values)
-            return (f'{mass:g} kg on {link}' if mass else 'nothing is carried') + (
+            if not mass:
+                return 'nothing is carried'
+            if robot.model.tree.links[link].body < 0:
+                return f'{mass:g} kg on {link}, which no joint moves: without any effect'
+            return f'{mass:g} kg on {link}' + (
                 f', but gravity torque is above its limit: {over}' if over else '')
         return self._with_payload(self.answer(response, fill))
 
@@ -82,7 +86,9 @@ class SettingServices(Answering):
         except ArgumentError as error:
             raise ArgumentError(f'header.frame_id: {error}') from error
         timeout = self.parameters['state_timeout']
-        if stale := robot.buffer.stale_joints(time.monotonic(), timeout):
+        # Every joint that turns it, also those that are not in `joints`, and no other.
+        if stale := robot.buffer.stale_joints(time.monotonic(), timeout,
+                                              _joints_to(robot.model.tree, frame)):
             raise ArgumentError(f'header.frame_id: how {frame} is turned is not known: no joint '
                                 f'state within {timeout:g} s for {", ".join(stale)}; publish '
                                 'joint_states, or give gravity in the frame of the root link')
@@ -107,3 +113,12 @@ class SettingServices(Answering):
             stamped.header.frame_id = robot.model.tree.root
             stamped.vector.x, stamped.vector.y, stamped.vector.z = robot.model.gravity.tolist()
         return response
+
+
+def _joints_to(tree, link):
+    # Places of the joints between the base and a link, each once.
+    body, joints = tree.links[link].body, set()
+    while body >= 0:
+        joints.add(int(tree.coordinate[body]))
+        body = tree.parent[body]
+    return sorted(joints)

@@ -38,7 +38,7 @@ class TrajectoryArrays:
         Raises
         ------
         ArgumentError
-            If there is no point, a name is unknown or a length is wrong.
+            If there is no point, a name is unknown, a length is wrong or a number not finite.
 
         """
         if not trajectory.points:
@@ -55,7 +55,7 @@ class TrajectoryArrays:
         if np.isnan(self.positions).any():
             missing = int(np.flatnonzero(np.isnan(self.positions).any(axis=1))[0])
             raise ArgumentError(f'trajectory.points[{missing}].positions: expected '
-                                f'{len(self.names)} numbers for {", ".join(self.names)}')
+                                f'{len(self.names)} numbers for {", ".join(self.names)}; got none')
 
     def _values(self, name, fields):
         count = len(self.names)
@@ -66,6 +66,12 @@ class TrajectoryArrays:
                                 f'for {", ".join(self.names)}, or none; got {lengths[wrong[0]]}')
         # All at once: a trajectory may have ten thousand points.
         numbers = np.frombuffer(b''.join(fields), dtype=float).reshape(-1, count)
+        if not np.isfinite(numbers).all():
+            # Inside, NaN stands for what is missing: here it would be believed to be that.
+            place = int(np.argmin(np.isfinite(numbers).all(axis=1)))
+            point = int(np.flatnonzero(lengths)[place])
+            raise ArgumentError(f'trajectory.points[{point}].{name}: expected finite numbers, or '
+                                f'none; got {numbers[place].tolist()}')
         values = np.full((len(fields), count), np.nan)
         values[lengths == count] = numbers
         return values

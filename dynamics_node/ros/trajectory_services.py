@@ -1,5 +1,7 @@
 """The services about trajectories and about how much the robot can carry."""
 
+import time
+
 from dynamics_interfaces.srv import ComputeTrajectoryEffort, GetMaxPayload
 import numpy as np
 
@@ -9,14 +11,29 @@ from .messages import to_field
 from .query import finite, Query
 from .trajectory_message import put_efforts, TrajectoryArrays
 from ..dynamics import complete_trajectory, over_limit
+from ..errors import ArgumentError
+
+# While efforts are sent, a request must not keep the node busy for longer than about 0.1 s.
+MOST_WHILE_DRIVING = 1000
 
 
 class TrajectoryServices(Answering):
     """Creates and answers ~/compute_trajectory_effort and ~/get_max_payload."""
 
-    def __init__(self, node, get_robot, parameters):
-        """Create the services of a node; see `Answering`."""
+    def __init__(self, node, get_robot, parameters, is_driving):
+        """
+        Create the services of a node; see `Answering`.
+
+        Parameters
+        ----------
+        node, get_robot, parameters
+            See `Answering`.
+        is_driving : callable() -> bool
+            Whether efforts are being sent, which must not wait for long.
+
+        """
         super().__init__(node, get_robot, parameters)
+        self._is_driving = is_driving
         node.create_service(ComputeTrajectoryEffort, '~/compute_trajectory_effort',
                             self.compute_trajectory_effort)
         node.create_service(GetMaxPayload, '~/get_max_payload', self.get_max_payload)
@@ -26,7 +43,7 @@ class TrajectoryServices(Answering):
         """Answer the same trajectory with efforts, and where they are above their limits."""
         def fill():
             robot, trajectory = self.robot(), request.trajectory
-            motion = _Motion(robot, trajectory)
+            motion = self._motion(robot, trajectory)
             model, (q, qd, qdd) = robot.model, motion.states
             efforts, notes = model.inverse_dynamics(q, qd, qdd), motion.notes
             if request.without_gravity:
@@ -49,7 +66,8 @@ class TrajectoryServices(Answering):
             if len(over.points):
                 notes.append(f'{len(over.points)} points above the effort limit of '
                              + ', '.join(response.joints_over_limit))
-            return '; '.join(notes) or 'all velocities and accelerations were given'
+            return ('; '.join(notes) or 'all velocities and accelerations were given'
+                    ) + motion.unseen
         return self.answer(response, fill)
 
     @guarded_service
@@ -60,19 +78,22 @@ class TrajectoryServices(Answering):
             link = request.link or robot.model.tip_link
             point = (request.point.x, request.point.y, request.point.z)
             if request.trajectory.points:
-                motion = _Motion(robot, request.trajectory)
+                motion = self._motion(robot, request.trajectory)
                 names, index, notes = motion.names, motion.index, motion.notes
+                unseen = motion.unseen
                 q, qd, qdd = motion.states
                 notes.insert(0, 'over the trajectory')
             else:
                 query = Query(robot, request, self.parameters['state_timeout'])
                 names, index, notes = query.names, query.index, [f'at rest {query.message}']
+                unseen = query.unseen
                 q = query.q[None]
                 qd = qdd = np.zeros_like(q)
-            limits = self._limits(robot)
+            limits = self._limits(robot) / self._gains(robot)
             most = robot.model.max_payload(q, link, point, qd=qd, qdd=qdd, effort_limits=limits)
             mass, joint, (place,) = most.least()
-            finite(np.nan_to_num(mass, posinf=0.0))
+            if mass != np.inf:  # which says that no limit is in the way
+                finite(mass)
             carried = robot.model.with_payload(link, mass if np.isfinite(mass) else 0.0, point)
             effort = carried.inverse_dynamics(q[place], qd[place], qdd[place])
             response.joint_names, response.link = list(names), link
@@ -82,8 +103,23 @@ class TrajectoryServices(Answering):
             response.limiting_point = place if request.trajectory.points else -1
             response.effort = to_field(finite(effort[index]))
             response.effort_limits = to_field(limits[index])
-            return '; '.join([_in_words(mass, response.limiting_joint, link), *notes])
+            return '; '.join([_in_words(mass, response.limiting_joint, link), *notes]) + unseen
         return self.answer(response, fill)
+
+    def _motion(self, robot, trajectory):
+        if len(trajectory.points) > MOST_WHILE_DRIVING and self._is_driving():
+            raise ArgumentError(
+                f'trajectory: expected at most {MOST_WHILE_DRIVING} points while the output is '
+                f'on, because the efforts wait for the answer, got {len(trajectory.points)}: ask '
+                'in parts, or while it is off')
+        timeout = self.parameters['state_timeout']
+        return _Motion(robot, trajectory, timeout)
+
+    def _gains(self, robot):
+        # What the node sends is limited after effort_scale.
+        gains = np.ones(len(robot.model.joint_names))
+        gains[robot.selection.index] = self.parameters['effort_scale'] or 1.0
+        return np.where(gains > 0.0, gains, np.finfo(float).tiny)
 
     def _limits(self, robot):
         # Of all joints: those that are not chosen have their limits too.
@@ -103,7 +139,7 @@ def _in_words(mass, joint, link):
 class _Motion:
     # A trajectory, with all derivatives, of all joints of the robot.
 
-    def __init__(self, robot, trajectory):
+    def __init__(self, robot, trajectory, timeout):
         arrays = TrajectoryArrays(robot, trajectory)
         motion = complete_trajectory(arrays.time, arrays.positions, arrays.velocities,
                                      arrays.accelerations)
@@ -113,3 +149,4 @@ class _Motion:
                        arrays.whole(motion.velocities, rest),
                        arrays.whole(motion.accelerations, rest))
         self.notes = [motion.obtained] if motion.obtained else []
+        self.unseen = robot.unseen_others(arrays.index, time.monotonic(), timeout)

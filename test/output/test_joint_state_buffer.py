@@ -50,6 +50,7 @@ def test_every_needed_joint_must_be_fresh():
     assert unit.age(2.25) == 1.25
     assert unit.stale_joints(2.0, 0.5) == ['a']
     assert unit.stale_joints(2.0, 1.5) == []
+    assert unit.stale_joints(2.0, 0.5, [1, 2]) == ['c']
 
 
 def test_a_joint_never_measured_stands_at_its_neutral_position():

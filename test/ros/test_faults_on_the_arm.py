@@ -9,6 +9,7 @@ import bisect
 import math
 import signal
 
+from dynamics_interfaces.srv import ComputeTrajectoryEffort
 import numpy as np
 import pytest
 from rclpy.node import Node
@@ -16,6 +17,8 @@ from sensor_msgs.msg import JointState
 from soak.rig import COMMAND_TOPIC, Rig
 from soak.sink import sink
 from std_msgs.msg import Float64MultiArray
+from support.processes import Client
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 # Shorter than by default, for the tests' sake; the timeout is longer, for a busy machine's.
 TIMEOUT, START_RAMP, STOP_RAMP = 0.5, 0.2, 0.5
@@ -104,6 +107,31 @@ def assert_it_is_still_held(rig, since, fault=''):
 
 
 # What does not stop it -----------------------------------------------------------------------
+
+
+def test_a_long_trajectory_does_not_make_it_sink(rig):
+    client, names = rig.client, rig.arm.driven_names
+    trajectory = JointTrajectory(joint_names=names)
+    for i in range(20_000):
+        point = JointTrajectoryPoint(positions=[0.0] * len(names))
+        point.time_from_start.sec, point.time_from_start.nanosec = divmod(i * 10**6, 10**9)
+        trajectory.points.append(point)
+    states, begin = len(client.outputs), client.now
+
+    def ask():
+        # Not that of the arm's client, which asks again when it has to wait.
+        return Client.call(client, ComputeTrajectoryEffort,
+                           '/dynamics_node/compute_trajectory_effort',
+                           ComputeTrajectoryEffort.Request(trajectory=trajectory))
+    # Only to be read, it may take longer than a joint state may be old here.
+    answer = ask()
+    assert not answer.success
+    assert 'expected at most 1000 points while the output is on' in answer.message
+    del trajectory.points[1000:]
+    answer = ask()
+    assert answer.success, answer.message
+    assert_it_is_still_held(rig, begin)
+    assert len(client.outputs) == states, rig.explain()
 
 HARMLESS = {
     'permuted': None, 'parts': None, 'no_stamp': None, 'unknown_names/7': None, 'flood': None,

@@ -12,6 +12,8 @@ from dynamics_node import RobotModel
 from geometry_msgs.msg import Inertia, Vector3, Vector3Stamped
 import numpy as np
 import pytest
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
 from soak.rig import Rig
 from support.carried import with_payload_link
 from support.robots import ARM7
@@ -39,6 +41,14 @@ def carry(rig, link='', inertia=None):
     """Call ~/set_payload."""
     return rig.client.call(SetPayload, '/dynamics_node/set_payload',
                            SetPayload.Request(link=link, inertia=inertia or Inertia()))
+
+
+def set_parameter(client, name, value):
+    """Set a parameter of the node; return why it is refused."""
+    answer = client.call(SetParameters, '/dynamics_node/set_parameters', SetParameters.Request(
+        parameters=[Parameter(name, value=value).to_parameter_msg()]))
+    assert not answer.results[0].successful
+    return answer.results[0].reason
 
 
 @pytest.fixture
@@ -112,6 +122,9 @@ def test_what_the_arm_cannot_hold_is_refused_while_output_is_on(floating):
     assert not answer.success
     assert 'turned by 90 degrees or more' in answer.message
     assert answer.gravity.vector.z == -9.81
+    # In two steps neither: first none at all, then upwards.
+    assert 'got zero: while output is on' in set_parameter(client, 'gravity', [0.0, 0.0, 0.0])
+    assert 'above the limit: shoulder_pitch' in set_parameter(client, 'effort_scale', [10.0] * 8)
     begin = client.now
     rig.during(0.5)
     _, position, _, _ = client.truth_between(begin, client.now)

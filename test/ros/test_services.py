@@ -191,6 +191,10 @@ def test_the_jacobian_of_a_point_of_a_link(shared):
                          GetJacobian.Request(position=Q.tolist(), link='nose'))
     assert not answer.success
     assert 'link: expected one of base, ' in answer.message
+    answer = shared.call(GetJacobian, '/dynamics_node/get_jacobian',
+                         GetJacobian.Request(position=Q.tolist(), point=Point(y=np.nan)))
+    assert not answer.success
+    assert answer.message == 'point: expected finite numbers, m, got [0.0, nan, 0.0]'
     assert len(answer.jacobian) == 0
 
 

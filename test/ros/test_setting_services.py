@@ -93,11 +93,19 @@ def test_a_payload_weighs_moves_and_is_gone_without_a_trace(shared):
     assert gravity_torque(shared).tolist() == before.tolist()
 
 
+def test_on_a_link_that_no_joint_moves_it_has_no_effect_and_it_says_so(shared):
+    before = gravity_torque(shared)
+    answer = set_payload(shared, 'base', BOX)
+    assert answer.success
+    assert answer.message == '1.5 kg on base, which no joint moves: without any effect'
+    assert gravity_torque(shared).tolist() == before.tolist()
+
+
 @pytest.mark.parametrize(('link', 'inertia', 'message'), [
     ('nose', BOX, "link: expected one of base, shoulder.*; got 'nose'"),
     ('', BOX, 'link: expected the one that carries the payload, got none: one of base, '),
-    ('hand', Inertia(m=-1.0), 'payload.mass: expected a finite number >= 0, got -1.0'),
-    ('hand', Inertia(m=np.nan), 'payload.mass: expected a finite number >= 0, got nan'),
+    ('hand', Inertia(m=-1.0), 'payload.mass: expected a number >= 0 and <= 100000, got -1.0'),
+    ('hand', Inertia(m=np.nan), 'payload.mass: expected a number >= 0 and <= 100000, got nan'),
     ('hand', Inertia(m=1.0, com=Vector3(x=np.inf)), 'payload.com: expected a finite number'),
     ('hand', Inertia(m=1.0, ixx=0.1, iyy=0.1, izz=0.5), 'inertia is not physical: .*triangle')])
 def test_what_no_robot_can_carry_is_refused_and_the_last_one_stays(shared, link, inertia, message):
@@ -154,6 +162,27 @@ def test_gravity_along_any_vector_in_the_frame_of_any_link(shared):
     np.testing.assert_allclose(gravity_torque(shared),
                                ARM.with_gravity(turn @ in_hand).gravity_torque(Q),
                                rtol=0, atol=1e-12)
+
+
+def test_only_the_joints_that_turn_a_frame_must_be_measured(client, start):
+    start(robot_description_file=ARM7, joints='[shoulder_yaw, shoulder_pitch]', state_timeout=1.0)
+
+    def publish():
+        client.publish(['shoulder_yaw', 'shoulder_pitch'], [0.3, 0.5])
+
+    client.until_heard(publish)
+    # Nobody has said how the elbow is turned, and the hand with it.
+    answer = set_gravity(client, (0.0, 0.0, -9.81), 'hand', publish)
+    assert not answer.success
+    assert 'no joint state within 1 s for upper_arm_roll, elbow_pitch, ' in answer.message
+    assert answer.gravity.vector.z == -9.81
+    q = ARM.neutral_position
+    q[:2] = 0.3, 0.5
+    answer = set_gravity(client, (0.0, 3.0, -9.0), 'upper_arm', publish)
+    assert answer.success, answer.message
+    expected = ARM.link_pose(q, 'upper_arm')[:3, :3] @ (0.0, 3.0, -9.0)
+    vector = answer.gravity.vector
+    assert [vector.x, vector.y, vector.z] == pytest.approx(expected, abs=1e-14)
 
 
 def test_a_payload_follows_gravity_whatever_the_mounting(shared):

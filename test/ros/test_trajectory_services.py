@@ -5,6 +5,8 @@ from dynamics_node import RobotModel
 from geometry_msgs.msg import Point
 import numpy as np
 import pytest
+from rcl_interfaces.msg import Parameter, ParameterValue
+from rcl_interfaces.srv import SetParameters
 from support.carried import with_payload_link
 from support.mujoco_oracle import MujocoOracle
 from support.pinocchio_oracle import PinocchioOracle
@@ -124,6 +126,9 @@ def test_some_joints_move_the_others_stand_where_they_are(client, start):
     whole[:, [2, 1]], rates[:, [2, 1]], changes[:, [2, 1]] = q, qd, qdd
     expected = ARM.inverse_dynamics(whole, rates, changes)[:, [2, 1]]
     np.testing.assert_allclose(efforts(answer), expected, rtol=0, atol=1e-12)
+    assert answer.message.endswith(
+        'taken where last measured, or neutral if never: '
+        + ', '.join(ARM.joint_names[i] for i in (0, 3, 4, 5, 6, 7)))
     # No names: the chosen joints.
     q4, qd4, qdd4 = (values[:, :4] for values in motion(time))
     answer = ask(client, message(time, q4, qd4, qdd4, names=[]))
@@ -135,6 +140,9 @@ def test_what_is_no_trajectory_is_refused_in_words(shared):
     q, qd, qdd = motion(time)
     nan = q.copy()
     nan[1, 2] = np.nan
+    no_rates = message(time, q, qd, qdd)
+    no_rates.points[0].velocities = []
+    no_rates.points[1].velocities = [np.nan] * N
     backwards = message(time, q)
     short = message(time, q, qd)
     short.points[1].velocities = [1.0]
@@ -144,7 +152,10 @@ def test_what_is_no_trajectory_is_refused_in_words(shared):
              (backwards, 'time: point 2: expected more than 1.0 s'),
              (short, r'trajectory.points[1].velocities: expected 8 numbers for'),
              (without, r'trajectory.points[2].positions: expected 8 numbers'),
-             (message(time, nan, qd, qdd), 'positions: expected 8 numbers'),
+             (message(time, nan, qd, qdd), 'trajectory.points[1].positions: expected finite'),
+             (no_rates, 'trajectory.points[1].velocities: expected finite numbers, or none; got'),
+             (message(time, q, qd, nan), 'trajectory.points[1].accelerations: expected finite'),
+             (message(time, q[:, :1], names=['\x1b[2J']), r"'\x1b[2J' is not a joint"),
              (message(time, q[:, :1], names=['nose']), "'nose' is not a joint"),
              (message(time, q, 1e300 + qd, qdd), 'the result is not finite')]
     for trajectory, reason in cases:
@@ -201,6 +212,14 @@ def test_the_limits_are_those_of_the_parameter_and_nothing_may_be_in_the_way(cli
     expected = ARM.max_payload(q, 'hand', effort_limits=low)
     assert answer.mass == pytest.approx(float(expected.mass), rel=1e-12)
     assert 0.0 < answer.mass < 0.8 * float(ARM.max_payload(q, 'hand').mass)
+    # What the node sends is limited after its gains.
+    assert client.call(SetParameters, '/dynamics_node/set_parameters', SetParameters.Request(
+        parameters=[Parameter(name='effort_scale', value=ParameterValue(
+            type=8, double_array_value=[1.25] * N))])).results[0].successful
+    answer = largest(client, position=q.tolist(), link='hand')
+    expected = ARM.max_payload(q, 'hand', effort_limits=low / 1.25)
+    assert answer.mass == pytest.approx(float(expected.mass), rel=1e-12)
+    np.testing.assert_allclose(answer.effort_limits, low / 1.25)
     answer = largest(client, position=q.tolist(), link='base')
     assert (answer.mass, answer.limiting_joint) == (np.inf, '')
     assert answer.message.startswith('no effort limit is in the way')
@@ -208,3 +227,8 @@ def test_the_limits_are_those_of_the_parameter_and_nothing_may_be_in_the_way(cli
     assert not answer.success
     assert np.isnan(answer.mass)
     assert len(answer.effort) == len(answer.joint_names) == 0
+    # So far away that one kilogram there is more than numbers can hold.
+    answer = largest(client, position=q.tolist(), link='hand', point=Point(x=1e160))
+    assert not answer.success
+    assert 'the result is not finite' in answer.message
+    assert np.isnan(answer.mass)

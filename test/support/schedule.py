@@ -13,7 +13,7 @@ _WITH_PROCESSES = 'test/ros/test_'
 # But for these, whose tests share them.
 _SHARING = {'test/ros/test_services.py', 'test/ros/test_setting_services.py',
             'test/ros/test_trajectory_services.py', 'test/ros/test_faults_on_the_arm.py',
-            'test/ros/test_payload_on_the_arm.py'}
+            'test/ros/test_payload_on_the_arm.py', 'test/ros/test_external_torque_on_the_arm.py'}
 
 # Files that share what a process computes only once: see support/sweep.py.
 _TOGETHER = {f'test/{name}.py': 'sweep' for name in (
