@@ -52,14 +52,12 @@ def test_what_the_arm_can_follow_is_possible(before, after):
      {'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2} | payload(500.0), 'shoulder_pitch'),
     # Nor is what turns round there: the effort would go from one limit to the other.
     (payload(500.0), payload(500.0, com=(0.0, 0.0, -3.0)), 'above the limit: shoulder_pitch: 109'),
-    ({}, payload(1e308, com=(0.0, 0.0, 0.06)), 'above the limit: .*shoulder_pitch: nan'),
     ({}, SCALED, 'above the limit: shoulder_pitch'),
     ({}, {'gravity': (0.0, 0.0, 9.81)}, 'by 90 degrees or more'),
     ({}, {'gravity': (9.81, 0.0, 0.0)}, 'by 90 degrees or more'),
     ({}, {'gravity': (0.0, 0.0, 0.0)}, 'not zero while output is on'),
     ({'gravity': (0.0,) * 3}, {'gravity': DOWN}, 'not zero while output is on'),
 ], ids=str)
-@pytest.mark.filterwarnings('ignore:overflow')  # numbers that no payload has
 def test_what_would_throw_or_drop_it_is_refused(before, after, message):
     with pytest.raises(ParameterError, match=message):
         change(before, after)

@@ -112,10 +112,10 @@ def test_what_the_arm_cannot_hold_is_refused_while_output_is_on(floating):
     assert not answer.success
     assert 'its gravity torque would be above the limit: shoulder_pitch' in answer.message
     assert (answer.link, answer.inertia) == ('hand', TOOL)
-    # So large that the torque is no number, which is above no limit.
+    # Or so large that the torque is no number, which is above no limit.
     answer = carry(rig, 'hand', Inertia(m=1e308, com=Vector3(z=0.06)))
     assert not answer.success
-    assert 'shoulder_pitch: nan' in answer.message
+    assert 'payload.mass: expected a number >= 0 and <= 100000' in answer.message
     upwards = Vector3Stamped(vector=Vector3(z=9.81))
     answer = client.call(SetGravity, '/dynamics_node/set_gravity',
                          SetGravity.Request(gravity=upwards))
@@ -123,7 +123,7 @@ def test_what_the_arm_cannot_hold_is_refused_while_output_is_on(floating):
     assert 'turned by 90 degrees or more' in answer.message
     assert answer.gravity.vector.z == -9.81
     # In two steps neither: first none at all, then upwards.
-    assert 'got zero: while output is on' in set_parameter(client, 'gravity', [0.0, 0.0, 0.0])
+    assert 'not zero while output is on' in set_parameter(client, 'gravity', [0.0, 0.0, 0.0])
     assert 'above the limit: shoulder_pitch' in set_parameter(client, 'effort_scale', [10.0] * 8)
     begin = client.now
     rig.during(0.5)
