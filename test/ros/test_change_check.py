@@ -59,7 +59,6 @@ def test_what_the_arm_can_follow_is_possible(before, after):
     ({}, {'gravity': (0.0, 0.0, 0.0)}, 'not zero while output is on'),
     ({'gravity': (0.0,) * 3}, {'gravity': DOWN}, 'not zero while output is on'),
 ], ids=str)
-@pytest.mark.filterwarnings('ignore:overflow')  # numbers that no payload has
 def test_what_would_throw_or_drop_it_is_refused(before, after, message):
     with pytest.raises(ParameterError, match=message):
         change(before, after)

@@ -263,8 +263,8 @@ NEEDLE = PENDULUM.read_text().replace('type="continuous"', 'type="revolute"').re
 class Direct:
     """The publisher and a robot, and states that are put into its buffer."""
 
-    def __init__(self, client, urdf=NEEDLE):
-        self.robot = Robot(RobotModel.from_urdf(urdf), ())
+    def __init__(self, client, urdf=NEEDLE, joints=()):
+        self.robot = Robot(RobotModel.from_urdf(urdf), joints)
         self.parameters = {'publish_external_torque': True, 'external_torque.gain': 100.0}
         self.messages = []
         publisher = types.SimpleNamespace(publish=self.messages.append)
@@ -387,6 +387,43 @@ def swing(time, model):
     phase = np.pi * time + np.arange(len(size))
     return (model.position_limits.mean(axis=1) + size * np.sin(phase),
             np.pi * size * np.cos(phase), -np.pi**2 * size * np.sin(phase))
+
+
+def test_a_doubt_outlives_the_observer_that_began_before_it(direct):
+    for i in range(5, 220):
+        direct.state(0.01 * i)  # of an arm that reports zeros
+    assert direct.unit.health()[0].startswith('hinge reports 0 at rest')
+    other_gain(direct)
+    direct.state(2.2)
+    assert direct.unit.health()[0].startswith('hinge reports 0 at rest')
+    other_robot(direct)  # its joints have the same names
+    direct.state(2.21)
+    assert direct.unit.health()[0].startswith('hinge reports 0 at rest')
+
+
+def test_an_unknown_effort_begins_the_rest_anew(direct):
+    for begin in (0.05, 1.6):
+        assert direct.state(begin, effort=math.nan) == 0
+        for i in range(1, 150):
+            direct.state(begin + 0.01 * i)
+        assert direct.unit.health()[0] == ''
+    for i in range(1, 60):
+        direct.state(3.1 + 0.01 * i)
+    assert direct.unit.health()[0].startswith('hinge reports 0 at rest')
+
+
+def test_the_chosen_joints_are_doubted_by_their_own_limits(client):
+    # The wrist carries more of its small limit than the shoulder of its large one.
+    chosen = ['wrist_pitch', 'shoulder_pitch']
+    direct = Direct(client, ARM7, chosen)
+    G = None
+    for i in range(220):
+        direct.take(0.01 * i, chosen, [1.2, 0.05], [0.0, 0.0], [0.0, 0.0])
+        G = direct.robot.gravity_torque()
+    limits = direct.robot.effort_limits(())
+    most = chosen[int(np.argmax(np.abs(G) / limits))]
+    assert most != chosen[int(np.argmax(np.abs(G)))]
+    assert direct.unit.health()[0].startswith(f'{most} reports 0 at rest')
 
 
 def test_an_error_in_it_leaves_the_torque_alone(direct, capfd):

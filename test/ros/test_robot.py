@@ -1,6 +1,7 @@
 """The robot in force: what may be asked of it, and what it refuses."""
 
 from dynamics_node import RobotModel
+from dynamics_node.ros.parameter_table import check_all
 from dynamics_node.ros.robot import Robot, StateUnavailableError
 import numpy as np
 import pytest
@@ -45,3 +46,13 @@ def test_the_measured_position_is_refused_while_a_chosen_joint_is_not_fresh():
     q = robot.measured_position(0.05, 0.1)
     assert (q[2], q[0]) == (0.25, 0.5)
     np.testing.assert_array_equal(q[3:], model.neutral_position[3:])
+
+
+@pytest.mark.filterwarnings('ignore:overflow')  # numbers that no payload has
+def test_a_torque_that_is_no_number_is_above_every_limit():
+    robot, values = Robot(RobotModel.from_urdf(ARM7), ()), check_all({})
+    robot.buffer.update(0.0, list(robot.joint_names), [0.02] * len(robot.joint_names))
+    assert robot.over_limits(values) == ''
+    heavy = robot.model.with_payload('hand', 1e308, (0.0, 0.0, 0.06))
+    for before in (None, values):
+        assert 'shoulder_pitch: nan, limit 90' in robot.over_limits(values, heavy, before)

@@ -241,7 +241,7 @@ def test_all_of_it_from_the_start_by_parameters(client, start):
     ({'payload.mass': 1.0, 'payload.link': 'hand',
       'payload.inertia': '[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]'}, 'inertia is not physical'),
     ({'rotor_inertia': '[0.1]'}, 'rotor_inertia: expected 8 numbers for shoulder_yaw'),
-    ({'friction.coulomb': '[-1.0]'}, 'friction.coulomb: expected a finite number >= 0')])
+    ({'friction.coulomb': '[-1.0]'}, 'friction.coulomb: expected a number >= 0 and <= 1e.06')])
 def test_a_start_with_wrong_ones_ends_at_once_and_says_why(start, parameters, message):
     code, output = start(robot_description_file=ARM7, **parameters).wait(60.0)
     assert code == 1
