@@ -137,6 +137,31 @@ def test_a_wait_ends_after_its_time(executor, node):
     assert 0.19 <= time.monotonic() - begin < 5.0
 
 
+def test_a_message_that_waits_comes_before_a_timer_that_is_due(context):
+    # Whoever was busy looks at the newest state before judging that it is too old.
+    executor, order = LeanExecutor(context=context), []
+    node = rclpy.create_node('lean', context=context)
+    executor.add_node(node)
+    node.create_subscription(String, 'topic', lambda message: order.append('message'), 1)
+    publisher = node.create_publisher(String, 'topic', 1)
+    until(executor, publisher.get_subscription_count)
+    publisher.publish(String())
+    until(executor, lambda: order)
+    timer = node.create_timer(0.05, lambda: order.append('timer'))
+    for _ in range(5):
+        order.clear()
+        spin(executor, 0.1)
+        order.clear()
+        timer.reset()
+        publisher.publish(String())
+        time.sleep(0.1)
+        executor.spin_once(1.0)
+        assert order == ['message', 'timer']
+    executor.remove_node(node)
+    node.destroy_node()
+    executor.shutdown()
+
+
 def test_tasks_are_run(executor, node):
     done = []
     executor.create_task(done.append, 1)
