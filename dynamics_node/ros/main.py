@@ -11,6 +11,8 @@ from .signals import Signals
 # Time that a stop may take after SIGINT or SIGTERM, s; launch kills after 5.
 STOP_WITHIN = 2.5
 GIVE_UP_AFTER = 3.0
+# What only some services need is loaded so long after the start, which has enough to do, s.
+LOAD_AFTER = 3.0
 # The longest that the loop waits during that, s.
 STOP_SLICE = 0.1
 
@@ -71,7 +73,9 @@ def _spin(node, signals, options):
     executor.add_node(node)
     signals.call(node.create_guard_condition(lambda: None).trigger)
     _spare_the_garbage_collector()
-    threading.Thread(target=_load_the_rest, name='dynamics_node load', daemon=True).start()
+    later = threading.Timer(LOAD_AFTER, _load_the_rest)
+    later.daemon = True
+    later.start()
     while not signals.name:
         _spin_once(node, executor)
     _bring_to_rest(node, executor, signals.name)
@@ -87,8 +91,8 @@ def _spare_the_garbage_collector():
 
 
 def _load_the_rest():
-    # What only some services need. Imported by the first of them, it would hold up the control
-    # loop for half a second, and at the start everybody.
+    # Imported by the first service that needs it, it would hold up the control loop for half a
+    # second.
     import scipy.interpolate
     import scipy.spatial.transform  # noqa: F401
     gc.freeze()
