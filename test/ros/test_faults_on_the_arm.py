@@ -9,7 +9,6 @@ import bisect
 import math
 import signal
 
-from dynamics_interfaces.srv import ComputeTrajectoryEffort
 import numpy as np
 import pytest
 from rclpy.node import Node
@@ -17,8 +16,6 @@ from sensor_msgs.msg import JointState
 from soak.rig import COMMAND_TOPIC, Rig
 from soak.sink import sink
 from std_msgs.msg import Float64MultiArray
-from support.processes import Client
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 # Shorter than by default, for the tests' sake; the timeout is longer, for a busy machine's.
 TIMEOUT, START_RAMP, STOP_RAMP = 0.5, 0.2, 0.5
@@ -146,31 +143,6 @@ def test_bad_messages_among_good_ones_are_counted_and_do_not_move_the_arm(unhurr
         if not todo:
             return
     raise AssertionError(f'not counted: {todo}')
-
-
-def test_a_long_trajectory_does_not_make_it_sink(unhurried):
-    # A state that has come meanwhile counts before its age does: test_lean_executor.py.
-    rig, client, names = unhurried, unhurried.client, unhurried.arm.driven_names
-    trajectory = JointTrajectory(joint_names=names)
-    for i in range(10_000):
-        point = JointTrajectoryPoint(positions=[0.0] * len(names))
-        point.time_from_start.sec, point.time_from_start.nanosec = divmod(i * 10**6, 10**9)
-        trajectory.points.append(point)
-    states, begin = len(client.outputs), client.now
-
-    def ask():
-        # Not that of the arm's client, which asks again when it has to wait.
-        return Client.call(client, ComputeTrajectoryEffort,
-                           '/dynamics_node/compute_trajectory_effort',
-                           ComputeTrajectoryEffort.Request(trajectory=trajectory))
-    answer = ask()
-    assert not answer.success
-    assert 'expected at most 1000 points while the output is on' in answer.message
-    del trajectory.points[1000:]
-    answer = ask()
-    assert answer.success, answer.message
-    assert_it_is_still_held(rig, begin)
-    assert len(client.outputs) == states, rig.explain()
 
 
 def test_a_short_freeze_of_the_line_is_bridged(unhurried):

@@ -1,7 +1,12 @@
 """~/compute_trajectory_effort and ~/get_max_payload over DDS, against Pinocchio and MuJoCo."""
 
+import types
+
 from dynamics_interfaces.srv import ComputeTrajectoryEffort, GetMaxPayload
 from dynamics_node import RobotModel
+from dynamics_node.ros.parameter_table import check_all
+from dynamics_node.ros.robot import Robot
+from dynamics_node.ros.trajectory_services import MOST_WHILE_DRIVING, TrajectoryServices
 from geometry_msgs.msg import Point
 import numpy as np
 import pytest
@@ -164,6 +169,27 @@ def test_what_is_no_trajectory_is_refused_in_words(shared):
         assert reason in answer.message
         assert answer.trajectory == JointTrajectory()
         assert not len(answer.peak_effort)
+
+
+def test_a_long_one_is_refused_while_efforts_are_sent():
+    node = types.SimpleNamespace(get_logger=lambda: None, create_service=lambda *_: None)
+    robot, is_driving = Robot(ARM, ()), True
+    services = TrajectoryServices(node, lambda: robot, check_all({}), lambda: is_driving)
+    time = np.arange(MOST_WHILE_DRIVING + 1.0)
+    trajectory = message(time, *motion(time))
+
+    def answer():
+        return services.compute_trajectory_effort(
+            ComputeTrajectoryEffort.Request(trajectory=trajectory),
+            ComputeTrajectoryEffort.Response())
+    refused = answer()
+    assert not refused.success
+    assert 'expected at most 1000 points while the output is on' in refused.message
+    is_driving = False
+    assert answer().success
+    is_driving = True
+    trajectory.points.pop()
+    assert answer().success
 
 
 # The largest payload -----------------------------------------------------------------------
