@@ -73,7 +73,7 @@ class ExternalTorque:
         return is_on
 
     @logged
-    def on_state(self, robot, stamp):
+    def on_state(self, robot, stamp, gravity_torque):
         """
         Observe a state, and publish what follows from it.
 
@@ -83,6 +83,8 @@ class ExternalTorque:
             With that state in its buffer.
         stamp : builtin_interfaces.msg.Time
             Of the state, or of its arrival if it says none.
+        gravity_torque : numpy.ndarray, shape (m,)
+            G of the chosen joints at that state, N m or N, finite.
 
         """
         time = robot.buffer.measured or stamp.sec * _SECOND + stamp.nanosec
@@ -98,7 +100,7 @@ class ExternalTorque:
             watch.forget()
             return
         estimate = watch.observer.update(watch.seconds, q, qd, effort)
-        if watch.at_rest.update(watch.seconds, qd[index], effort, robot.gravity_torque()):
+        if watch.at_rest.update(watch.seconds, qd[index], effort, gravity_torque):
             self._warn_of(watch.at_rest.doubt)
         if watch.observer.observed == 0.0:
             self._begun += 1

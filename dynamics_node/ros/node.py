@@ -15,7 +15,7 @@ from .enabling import Enabling
 from .external_torque import ExternalTorque
 from .guard import logged
 from .mismatch import mismatches
-from .model_settings import configured, PER_JOINT
+from .model_settings import PER_JOINT
 from .parameter_table import ParameterError
 from .parameters import Parameters
 from .results import Results
@@ -149,7 +149,7 @@ class DynamicsNode(Node):
         if robot is None:
             return
         self._check_lengths(values, robot)
-        model = configured(robot, values, before)
+        model = robot.configured(values, before)
         if self.output.channel.machine.is_on:
             check_change(robot, model, values, before)
 
@@ -183,7 +183,7 @@ class DynamicsNode(Node):
             self.logger.info('joint states arrive: publishing gravity torque')
         self._results.publish(robot, stamp, effort)
         if self._external_torque.is_on:
-            self._external_torque.on_state(robot, stamp)
+            self._external_torque.on_state(robot, stamp, effort)
 
     @logged
     def _every_second(self):

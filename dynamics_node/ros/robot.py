@@ -52,6 +52,8 @@ class Robot:
             model.joint_names, self.selection.names, model.neutral_position,
             MotionLimits(model.joint_names, model.velocity_limits, model.position_limits,
                          model.is_continuous))
+        self._asked: tuple | None = None
+        self._answer = model
         self.has_all_in_order = self.selection.names == tuple(model.joint_names)
 
     def configure(self, values, before=None):
@@ -68,10 +70,35 @@ class Robot:
         Raises
         ------
         DynamicsError
-            See `configured`.
+            See `model_settings.configured`.
 
         """
-        self.model = configured(self, values, before)
+        self.model = self.configured(values, before)
+
+    def configured(self, values, before=None):
+        """
+        Return the model as `configure` would make it; the one last asked for is made once.
+
+        Parameters
+        ----------
+        values, before : dict of str to Any
+            See `configure`.
+
+        Returns
+        -------
+        RobotModel
+
+        Raises
+        ------
+        DynamicsError
+            See `model_settings.configured`.
+
+        """
+        question = (self.model, values, before)
+        if question != self._asked:
+            self._answer = configured(self, values, before)
+            self._asked = question
+        return self._answer
 
     @property
     def joint_names(self):

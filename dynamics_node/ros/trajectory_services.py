@@ -89,7 +89,7 @@ class TrajectoryServices(Answering):
                 unseen = query.unseen
                 q = query.q[None]
                 qd = qdd = np.zeros_like(q)
-            limits = self._limits(robot) / self._gains(robot)
+            limits = self._limits_before_gains(robot)
             most = robot.model.max_payload(q, link, point, qd=qd, qdd=qdd, effort_limits=limits)
             mass, joint, (place,) = most.least()
             if mass != np.inf:  # which says that no limit is in the way
@@ -115,11 +115,12 @@ class TrajectoryServices(Answering):
         timeout = self.parameters['state_timeout']
         return _Motion(robot, trajectory, timeout)
 
-    def _gains(self, robot):
-        # What the node sends is limited after effort_scale.
+    def _limits_before_gains(self, robot):
+        # What the node sends is limited after effort_scale; what it never sends has no limit.
         gains = np.ones(len(robot.model.joint_names))
         gains[robot.selection.index] = self.parameters['effort_scale'] or 1.0
-        return np.where(gains > 0.0, gains, np.finfo(float).tiny)
+        return np.divide(self._limits(robot), gains, where=gains > 0.0,
+                         out=np.full(len(gains), np.nan))
 
     def _limits(self, robot):
         # Of all joints: those that are not chosen have their limits too.

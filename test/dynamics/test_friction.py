@@ -5,6 +5,7 @@ import mujoco
 import numpy as np
 import pinocchio
 import pytest
+from support.mujoco_oracle import MujocoOracle
 from support.robots import ARM7, public_robot, random_state, random_urdf
 
 TWO_JOINTS = """<robot name="r"><link name="world"/>
@@ -120,12 +121,16 @@ def test_rotors_are_what_pinocchio_and_mujoco_call_armature(seed):
 
 
 def test_rotors_against_mujoco_and_back_to_none():
-    text = ARM7.read_text()
+    text, oracle = ARM7.read_text(), MujocoOracle(ARM7.read_text())
     rotors = np.linspace(0.1, 0.8, 8)
     plain = RobotModel.from_urdf(text)
     robot = plain.with_rotor_inertia(rotors)
     q = np.linspace(-1.0, 1.0, 8)
     assert robot.mass_matrix(q) - plain.mass_matrix(q) == pytest.approx(np.diag(rotors), abs=1e-14)
+    for name, rotor in zip(robot.joint_names, rotors, strict=True):
+        oracle.model.dof_armature[oracle.model.joint(name).dofadr] = rotor
+    expected, _, _ = oracle.dynamics(robot.joint_names, q, q)
+    assert robot.mass_matrix(q) == pytest.approx(expected, abs=1e-12)
     # The leader of a mimic joint has a rotor, the joint that follows it has none of its own.
     mimic = RobotModel.from_urdf(MIMIC)
     assert (mimic.with_rotor_inertia(0.5).mass_matrix([0.0])[0, 0]

@@ -201,6 +201,13 @@ def largest(client, **fields):
                        GetMaxPayload.Request(**fields))
 
 
+def scale(client, gains):
+    """Set the parameter effort_scale."""
+    assert client.call(SetParameters, '/dynamics_node/set_parameters', SetParameters.Request(
+        parameters=[Parameter(name='effort_scale', value=ParameterValue(
+            type=8, double_array_value=gains))])).results[0].successful
+
+
 def test_with_the_largest_payload_pinocchio_is_at_the_limit(shared):
     q, point = np.linspace(0.8, -0.6, N), (0.02, 0.01, 0.1)
     answer = largest(shared, position=q.tolist(), link='hand', point=Point(x=0.02, y=0.01, z=0.1))
@@ -239,13 +246,18 @@ def test_the_limits_are_those_of_the_parameter_and_nothing_may_be_in_the_way(cli
     assert answer.mass == pytest.approx(float(expected.mass), rel=1e-12)
     assert 0.0 < answer.mass < 0.8 * float(ARM.max_payload(q, 'hand').mass)
     # What the node sends is limited after its gains.
-    assert client.call(SetParameters, '/dynamics_node/set_parameters', SetParameters.Request(
-        parameters=[Parameter(name='effort_scale', value=ParameterValue(
-            type=8, double_array_value=[1.25] * N))])).results[0].successful
+    scale(client, [1.25] * N)
     answer = largest(client, position=q.tolist(), link='hand')
     expected = ARM.max_payload(q, 'hand', effort_limits=low / 1.25)
     assert answer.mass == pytest.approx(float(expected.mass), rel=1e-12)
     np.testing.assert_allclose(answer.effort_limits, low / 1.25)
+    # A joint to which nothing is sent limits nothing.
+    assert answer.limiting_joint == ARM.joint_names[1]
+    scale(client, [1.25, 0.0, *[1.25] * (N - 2)])
+    answer = largest(client, position=q.tolist(), link='hand')
+    assert answer.success and answer.limiting_joint != ARM.joint_names[1]
+    assert np.isnan(answer.effort_limits[1])
+    assert answer.mass > float(expected.mass)
     answer = largest(client, position=q.tolist(), link='base')
     assert (answer.mass, answer.limiting_joint) == (np.inf, '')
     assert answer.message.startswith('no effort limit is in the way')
