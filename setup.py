@@ -26,6 +26,7 @@ setup(
     install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'scipy', 'yourdfpy'],
     extras_require={
         'demo': ['mujoco', 'matplotlib', 'rich'],
+        'report': ['rich', 'plotly'],
         'test': ['pytest', 'pytest-xdist', 'hypothesis', 'pin', 'mujoco',
                  'example-robot-data'],
     },
