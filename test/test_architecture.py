@@ -16,8 +16,9 @@ STREET = {
     'model': {'errors', 'inertia', 'urdf'},
     'kernels': {'errors', 'model'},
     'dynamics': {'errors', 'inertia', 'urdf', 'model', 'kernels'},
+    'drawing': {'errors', 'inertia', 'model', 'dynamics'},
     'output': {'errors'},
-    'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'output'},
+    'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'drawing', 'output'},
 }
 # llvmlite is numba's compiler and comes with it.
 LIBRARY = {'numpy', 'numba', 'llvmlite', 'yourdfpy', 'scipy'}

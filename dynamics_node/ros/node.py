@@ -14,6 +14,7 @@ from .diagnostics import Diagnostics
 from .enabling import Enabling
 from .external_torque import ExternalTorque
 from .guard import logged
+from .markers import Markers
 from .mismatch import mismatches
 from .model_settings import PER_JOINT
 from .parameter_table import ParameterError
@@ -69,6 +70,7 @@ class DynamicsNode(Node):
         self._external_torque = ExternalTorque(self, self.parameters)
         self.output = CommandOutput(self, self.parameters, self._get_robot,
                                     self._output_changed)
+        self._markers = Markers(self, self.parameters, self.output.channel)
         self.states = StateInput(self, self.parameters, self._get_robot, self.output.channel,
                                  self, raw_states)
         self._rivals = Rivals(self, self.output.topic, self.states,
@@ -164,7 +166,11 @@ class DynamicsNode(Node):
         if self._robot is not None:
             self._robot.buffer.tolerance = StampTolerance(values['state_timeout'])
         self.output.configure()
-        self.states.with_effort = self._external_torque.configure()
+        self._external_torque.configure()
+        self._ask_for_efforts()
+
+    def _ask_for_efforts(self):
+        self.states.with_effort = self._external_torque.is_on or self._markers.is_on
 
     def on_state(self, robot, now, stamp):
         """Compute what follows from a state that is fit for use, and publish it."""
@@ -184,6 +190,10 @@ class DynamicsNode(Node):
         self._results.publish(robot, stamp, effort)
         if self._external_torque.is_on:
             self._external_torque.on_state(robot, stamp, effort)
+        if self._markers.has_changed():
+            self._ask_for_efforts()  # they come with the next state
+        elif self._markers.is_on:
+            self._markers.on_state(robot, stamp, effort)
 
     @logged
     def _every_second(self):
