@@ -9,4 +9,4 @@ who shows them (`ros/markers.py` sends them to RViz) only translates.
 from .picture import Picture
 from .shapes import ARROW, BOX, DISC, LINE, Shape, SPHERE, TEXT
 
-__all__ = ['ARROW', 'BOX', 'DISC', 'LINE', 'Picture', 'SPHERE', 'Shape', 'TEXT']
+__all__ = ['ARROW', 'BOX', 'DISC', 'LINE', 'SPHERE', 'TEXT', 'Picture', 'Shape']

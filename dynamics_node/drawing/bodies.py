@@ -22,7 +22,7 @@ class Bodies:
 
     """
 
-    def __init__(self, names, matrices, rows, sizes, *, numbers=None, groups=(CENTRES, BOXES),
+    def __init__(self, names, matrices, rows, sizes, *, groups=(CENTRES, BOXES),
                  colour=(colours.BODY, colours.INERTIA)):
         """
         Look at the bodies once.
@@ -36,8 +36,6 @@ class Bodies:
         rows : sequence of int
             Moving bodies that they move with.
         sizes : Sizes
-        numbers : sequence of int, optional
-            Of their shapes; by default 0 to K - 1.
         groups : (str, str)
             Of the spheres and of the boxes.
         colour : (tuple, tuple)
@@ -45,7 +43,6 @@ class Bodies:
 
         """
         self._sizes = sizes
-        self._numbers = range(len(names)) if numbers is None else numbers
         self._groups, self._colours = groups, colour
         self._names, self._rows = list(names), np.array(rows, dtype=np.int64)
         masses, coms = zip(*map(mass_and_com, matrices), strict=True) if len(names) else ((), ())
@@ -96,11 +93,11 @@ class Bodies:
         found = []
         for k, (place, turn) in enumerate(zip(places, turns, strict=True)):
             if self._masses[k] > 0.0:
-                found.append(Shape(self._groups[0], self._numbers[k], SPHERE,
+                found.append(Shape(self._groups[0], k, SPHERE,
                                    self._sphere_size[k], self._colours[0], place))
             if k in self._box_size:
-                found.append(Shape(self._groups[1], self._numbers[k] + self._offset,
-                                   BOX, self._box_size[k], self._colours[1], place, tuple(turn)))
+                found.append(Shape(self._groups[1], k + self._offset, BOX,
+                                   self._box_size[k], self._colours[1], place, tuple(turn)))
             if k in self._problems:
                 found += self._problem(k, place)
         return found
@@ -114,5 +111,5 @@ class Bodies:
         above = (place[0], place[1], place[2] + 2.5 * self._sizes.text)
         return [Shape(PROBLEMS, 2 * k, BOX, (1.6 * self._sizes.sphere,) * 3, colours.PROBLEM,
                       place),
-                Shape(PROBLEMS, 2 * k + 1, TEXT, (self._sizes.text,) * 3, colours.PROBLEM, above,
+                Shape(PROBLEMS, 2 * k + 1, TEXT, self._sizes.text_size, colours.PROBLEM, above,
                       text=f'{self._names[k]}: {self._problems[k]}')]

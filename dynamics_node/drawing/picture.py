@@ -40,11 +40,11 @@ class Picture:
         self._torques = Torques(tree, joint_names, self._sizes)
         self._links = tree.links
         self._payload = None
-        self._payload_body = Bodies((), (), (), self._sizes)
+        self._payload_body = self._body_of(None)
 
-    def shapes(self, model, q, gravity_torque, effort, limits):
+    def parts(self, model, q, gravity_torque, effort, limits):
         """
-        Return what there is to see at one state.
+        Draw one state piece by piece, for whoever has other things to do in between.
 
         Parameters
         ----------
@@ -59,30 +59,36 @@ class Picture:
         limits : numpy.ndarray, shape (m,)
             Largest effort of the joints, N m or N; NaN where there is none.
 
-        Returns
-        -------
+        Yields
+        ------
         list of Shape
-            Everything in the base frame.
+            In the base frame: masses and gravity, then efforts. Nothing where the robot is at
+            no finite place.
 
         """
         poses = model.body_poses(q)
         if not np.isfinite(poses).all():
-            return []
-        return [*self._bodies.shapes(poses), *self._carried(model.payload).shapes(poses),
-                *self._gravity(model.gravity.tolist()),
-                *self._torques.shapes(poses, gravity_torque, effort, limits)]
+            return
+        yield [*self._bodies.shapes(poses), *self._carried(model.payload).shapes(poses),
+               *self._gravity(model.gravity.tolist())]
+        yield self._torques.shapes(poses, gravity_torque, effort, limits)
+
+    def shapes(self, *arguments):
+        """Draw one state at once: all that `parts` yields, a list of Shape."""
+        return [shape for part in self.parts(*arguments) for shape in part]
 
     def _carried(self, payload):
         if payload is not self._payload:
-            self._payload, bodies = payload, ((), (), ())
-            if payload is not None and self._links[payload.link].body >= 0:
-                frame = self._links[payload.link]
-                J = transform_pseudo_inertia(payload.pseudo_inertia, frame.placement)
-                bodies = (('payload',), (J,), (frame.body,))
-            self._payload_body = Bodies(
-                *bodies, self._sizes, groups=(PAYLOAD, PAYLOAD),
-                colour=(colours.PAYLOAD, colours.PAYLOAD_INERTIA))
+            self._payload, self._payload_body = payload, self._body_of(payload)
         return self._payload_body
+
+    def _body_of(self, payload):
+        frame = self._links[payload.link] if payload else None
+        if frame is None or frame.body < 0:
+            return Bodies((), (), (), self._sizes)
+        J = transform_pseudo_inertia(payload.pseudo_inertia, frame.placement)
+        return Bodies(('payload',), (J,), (frame.body,), self._sizes, groups=(PAYLOAD, PAYLOAD),
+                      colour=(colours.PAYLOAD, colours.PAYLOAD_INERTIA))
 
     def _gravity(self, gravity):
         # Beside the base, so that it is not hidden inside it.
@@ -94,20 +100,20 @@ class Picture:
         length = sizes.GRAVITY * reach * min(strength / _EARTH, 2.0)
         beside = np.zeros(3)
         beside[np.argmin(np.abs(direction))] = sizes.GRAVITY * reach
-        start = beside - 0.5 * length * direction
+        start = beside - length * direction
         thick = 0.04 * sizes.GRAVITY * reach
         return [
             Shape(GRAVITY, 0, ARROW, (thick, 2.5 * thick, 5.0 * thick), colours.GRAVITY,
                   tuple(start.tolist()),
                   points=((0.0, 0.0, 0.0), tuple((length * direction).tolist()))),
-            Shape(GRAVITY, 1, TEXT, (text,) * 3, colours.GRAVITY,
+            Shape(GRAVITY, 1, TEXT, self._sizes.text_size, colours.GRAVITY,
                   tuple((start - 1.5 * text * direction).tolist()),
                   text=f'{strength:.3g} m/s^2')]
 
 
 def _link_names(tree):
     # A body is called by the link that its joint moves, the one whose frame is the body's.
-    names = {}
+    names: dict = {}
     for link, frame in tree.links.items():
         names.setdefault(frame.body, link)
     return [names[k] for k in range(len(tree.inertia))]

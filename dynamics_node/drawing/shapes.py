@@ -20,8 +20,8 @@ class Shape(NamedTuple):
         point) or TEXT (that faces who looks).
     size : tuple of float, length 3
         m, > 0. Of a solid along its axes; of a line its width, three times; of an arrow the
-        diameters of shaft and head, and the length of the head; of a text its height, three
-        times.
+        diameters of shaft and head, and the length of the head; of a text the width of a blank
+        and its height, twice.
     colour : tuple of float, length 4
         Red, green, blue, opacity, 0 to 1.
     position : tuple of float, length 3

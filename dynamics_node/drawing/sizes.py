@@ -6,12 +6,12 @@ import numpy as np
 
 # Of the reach: the sphere of the heaviest body, the largest arc around a joint, the arrow of
 # 9.81 m/s², the height of a text, and the thinnest that a solid is drawn.
-HEAVIEST, ARC, GRAVITY, TEXT, THINNEST = 0.035, 0.075, 0.2, 0.022, 5e-4
+HEAVIEST, ARC, GRAVITY, TEXT, THINNEST = 0.032, 0.09, 0.2, 0.02, 5e-4
 # A joint nearer than this part of the reach shares its place with its neighbour.
 _SAME_PLACE = 0.01
 # Of the distance to the nearest neighbour: as large an arc may be. And of ARC: it is never
 # smaller.
-_ROOM, _LEAST = 0.45, 0.35
+_ROOM, _LEAST = 0.6, 0.5
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,11 @@ class Sizes:
     def text(self):
         """Height of a text, m."""
         return TEXT * self.reach
+
+    @property
+    def text_size(self):
+        """The size of a text as a shape has it, m."""
+        return (0.35 * self.text, self.text, self.text)
 
     @property
     def thinnest(self):

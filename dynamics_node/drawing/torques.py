@@ -14,8 +14,8 @@ GRAVITY_TORQUE, EFFORT, JOINTS, TEXTS = 'gravity_torque', 'effort', 'joints', 't
 FULL, LONGEST = 1.5 * math.pi, 1.95 * math.pi
 # Nothing is drawn with no length at all.
 _SHORTEST = 0.01
-# What is only rounding is said to be zero, N m or N.
-_NOTHING = 1e-9
+# Nobody reads more, and what is only rounding is zero.
+_DECIMALS = 3
 # Of the radius of a joint's arcs: where gravity's and the other one are, their widths, and the
 # length of an arrow at the limit.
 _PLACES = {GRAVITY_TORQUE: 0.8, EFFORT: 1.05}
@@ -82,15 +82,18 @@ class Torques:
             if not self._is_prismatic[i]:
                 found.append(Shape(JOINTS, i, DISC, (2.2 * radius, 2.2 * radius, 0.02 * radius),
                                    colours.JOINT, places[i], turns[i]))
-        for group, values in ((GRAVITY_TORQUE, gravity_torque.tolist()), (EFFORT, effort.tolist())):
+        gravity_torque = gravity_torque.tolist()
+        for group, values in ((GRAVITY_TORQUE, gravity_torque), (EFFORT, effort.tolist())):
             loads = self._loads(values, limits)
             found += [self._line(group, i, load, math.isnan(limits[i]), places[i], turns[i])
                       for i, load in enumerate(loads) if math.isfinite(load)]
         across = turned[:, :, 0].tolist()
-        for i, value in enumerate(gravity_torque.tolist()):
-            out = 1.7 * self._radius[i]
-            place = tuple(p + out * a for p, a in zip(places[i], across[i], strict=True))
-            found.append(Shape(TEXTS, i, TEXT, (self._sizes.text,) * 3, colours.TEXT, place,
+        for i, value in enumerate(gravity_torque):
+            out = -1.4 * self._radius[i]  # where the arcs do not begin
+            x, y, z = (p + out * a for p, a in zip(places[i], across[i], strict=True))
+            # Joints of a wrist are at one place: their texts should not be.
+            place = (x, y, z + (i % 3 - 1) * 1.3 * self._sizes.text)
+            found.append(Shape(TEXTS, i, TEXT, self._sizes.text_size, colours.TEXT, place,
                                text=self._text(i, value, limits[i])))
         return found
 
@@ -112,8 +115,7 @@ class Torques:
     def _text(self, i, value, limit):
         unit = 'N' if self._is_prismatic[i] else 'N m'
         part = '' if math.isnan(limit) else f' ({100.0 * abs(value) / limit:.0f} %)'
-        value = 0.0 if abs(value) < _NOTHING else value
-        return f'{self._names[i]}: {value:.3g} {unit}{part}'
+        return f'{self._names[i]}: {round(value, _DECIMALS) + 0.0:.3g} {unit}{part}'
 
 
 def _arc(at, load, radius):

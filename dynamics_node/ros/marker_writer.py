@@ -2,13 +2,13 @@
 
 import struct
 
-from builtin_interfaces.msg import Duration
+from builtin_interfaces.msg import Duration, Time
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
-from ..drawing import ARROW, BOX, DISC, LINE, SPHERE, TEXT
+from ..drawing import ARROW, BOX, DISC, LINE, Shape, SPHERE, TEXT
 
 # What is not replaced for so long is gone: nobody must see an arm that is not there any more, s.
 LIFETIME = 1
@@ -128,14 +128,9 @@ class MarkerWriter:
         _fill(out, struct.pack('<3i', number, kind, action))
         return bytes(out)
 
-    def is_right(self, shapes, stamp):
+    def is_right(self):
         """
         Tell whether rclpy reads from the bytes what it would have written.
-
-        Parameters
-        ----------
-        shapes, stamp
-            See `as_message`.
 
         Returns
         -------
@@ -143,11 +138,11 @@ class MarkerWriter:
             False also where this middleware has other bytes.
 
         """
-        frame_id = self._frame_id[4:-1].decode()
+        frame_id, stamp = self._frame_id[4:-1].decode(), Time(sec=1, nanosec=2)
         try:
             for begins_anew in (False, True):
-                ours = self.write(shapes, stamp, begins_anew)
-                theirs = serialize_message(as_message(shapes, stamp, frame_id, begins_anew))
+                ours = self.write(_SAMPLES, stamp, begins_anew)
+                theirs = serialize_message(as_message(_SAMPLES, stamp, frame_id, begins_anew))
                 # Not the bytes: what stands in the gaps means nothing.
                 if (deserialize_message(ours, MarkerArray)
                         != deserialize_message(theirs, MarkerArray)):
@@ -155,6 +150,12 @@ class MarkerWriter:
         except Exception:  # which of them says that bytes are no message depends on rclpy
             return False
         return True
+
+
+# One of each kind, behind texts and points of every length that leads to another gap.
+_SAMPLES = [Shape('ab'[:i % 3] + 'c', i, kind, (0.1, 0.2, 0.3), (0.1, 0.2, 0.3, 0.4),
+                  (1.0, 2.0, 3.0), (0.1, 0.2, 0.3, 0.4), ((4.0, 5.0, 6.0),) * (i % 2), 'text'[:i])
+            for i, kind in enumerate((*_TYPES, *_TYPES))]
 
 
 def _fill(out, data, alignment=4):

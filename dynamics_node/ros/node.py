@@ -70,7 +70,8 @@ class DynamicsNode(Node):
         self._external_torque = ExternalTorque(self, self.parameters)
         self.output = CommandOutput(self, self.parameters, self._get_robot,
                                     self._output_changed)
-        self._markers = Markers(self, self.parameters, self.output.channel)
+        self._markers = Markers(self, self.parameters, self.output.channel,
+                                self._ask_for_efforts)
         self.states = StateInput(self, self.parameters, self._get_robot, self.output.channel,
                                  self, raw_states)
         self._rivals = Rivals(self, self.output.topic, self.states,
@@ -125,6 +126,7 @@ class DynamicsNode(Node):
         is_first = self._robot is None
         self._robot = robot
         self._configure(self.parameters.values)
+        self._markers.prepare(robot)
         self._announce(robot, origin)
         if is_first:
             self.output.announce()
@@ -190,10 +192,7 @@ class DynamicsNode(Node):
         self._results.publish(robot, stamp, effort)
         if self._external_torque.is_on:
             self._external_torque.on_state(robot, stamp, effort)
-        if self._markers.has_changed():
-            self._ask_for_efforts()  # they come with the next state
-        elif self._markers.is_on:
-            self._markers.on_state(robot, stamp, effort)
+        self._markers.on_state(robot, stamp, effort)
 
     @logged
     def _every_second(self):
