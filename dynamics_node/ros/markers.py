@@ -60,8 +60,12 @@ class Markers:
     @logged
     def prepare(self, robot):
         """Look at a robot, before the first picture of it has to be made beside the torque."""
+        self._view_of(robot)
+
+    def _view_of(self, robot):
         if self._view is None or self._view.robot is not robot:
             self._view = _View(robot, self._view)
+        return self._view
 
     @logged
     def on_state(self, robot, stamp, gravity_torque):
@@ -106,8 +110,7 @@ class Markers:
     def _draw(self, robot, stamp, gravity_torque):
         # Of one state, however many come meanwhile.
         stamp = Time(sec=stamp.sec, nanosec=stamp.nanosec)  # the next state's may be put into it
-        self.prepare(robot)
-        view, shapes = self._view, []
+        view, shapes = self._view_of(robot), []
         for part in view.picture.parts(
                 robot.model, robot.buffer.position, gravity_torque, self._effort(robot),
                 robot.effort_limits(self._parameters['effort_limits'])):
