@@ -5,8 +5,8 @@ Start a simulated arm and dynamics_node beside it; the arm's brakes are engaged.
     ros2 service call /dynamics_node/enable std_srvs/srv/SetBool '{data: true}'
     ros2 service call /simulated_robot/set_brakes std_srvs/srv/SetBool '{data: false}'
 
-With `rviz:=true` RViz shows masses, gravity and torques. With `namespace:=left` everything is below
-/left: two of them, left and right, are two arms that know nothing of each other.
+With `rviz:=true` RViz shows masses, gravity and torques. With `namespace:=left` everything is
+below /left: two of them, left and right, are two arms that know nothing of each other.
 
 """
 
@@ -14,7 +14,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from ament_index_python.packages import (
-    get_package_prefix, get_package_share_directory, PackageNotFoundError)
+    get_package_prefix,
+    get_package_share_directory,
+    PackageNotFoundError,
+)
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction
 from launch.conditions import IfCondition
