@@ -1,0 +1,45 @@
+"""How well the mass matrix can be inverted."""
+
+import numpy as np
+
+from .report import ConditioningEntry
+from ..model.tree import PRISMATIC
+
+# Eigenvalues take time: no more positions than this.
+_MOST_SAMPLES = 1000
+# Below this, relative to the largest, an eigenvalue is rounding.
+_ROUNDING = 1e-14
+
+
+def conditioning_entry(study):
+    """
+    Return the condition number of D over the samples.
+
+    Parameters
+    ----------
+    study : Study
+        Of a robot with at least one joint.
+
+    Returns
+    -------
+    ConditioningEntry
+
+    """
+    model, n = study.model, len(study.model.joint_names)
+    count = min(_MOST_SAMPLES, len(study.positions))
+    numbers, is_definite = np.empty(count), True
+    for rows in study.batches(n * n, count):
+        values = np.linalg.eigvalsh(model.mass_matrix(study.positions[rows]))
+        sound = values[:, 0] > n * _ROUNDING * values[:, -1]
+        is_definite = is_definite and bool(sound.all())
+        numbers[rows] = np.where(sound, values[:, -1] / np.where(sound, values[:, 0], 1.0),
+                                 np.inf)
+    worst = study.positions[int(np.argmax(numbers))]
+    vector = np.linalg.eigh(model.mass_matrix(worst))[1][:, 0]
+    slides = {int(model.tree.coordinate[body]) for body in np.flatnonzero(
+        (model.tree.kind == PRISMATIC) & model.tree.is_independent)}
+    return ConditioningEntry(
+        median=float(np.median(numbers)), worst=float(numbers.max()),
+        position=tuple(worst.tolist()),
+        weakest_joint=model.joint_names[int(np.argmax(np.abs(vector)))],
+        is_positive_definite=is_definite, has_mixed_units=0 < len(slides) < n, samples=count)
