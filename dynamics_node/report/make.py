@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 
-from .carrying import payload_entry
+from .carrying import default_payload_link, payload_entry
 from .conditioning import conditioning_entry
 from .entries import body_entries, joint_entries, link_entries
 from .findings import find_all
@@ -38,7 +38,7 @@ def make_report(source, *, gravity=STANDARD_GRAVITY, samples=SAMPLES, seed=SEED,
     seed : int
         Of their positions, >= 0.
     link : str, optional
-        That carries a payload; by default the last one of the longest chain.
+        That carries a payload; by default the last one of the longest chain, before its fingers.
     point : array_like, shape (3,)
         Where the payload is in the link's frame, m.
     progress : callable(fraction, what), optional
@@ -93,14 +93,14 @@ def _what_is_written(source, examination, gravity, samples, seed):
 
 def _with_dynamics(report, study, link, point, tell):
     model = study.model
-    link = model.tip_link if link is None else link
+    link = default_payload_link(model.tree, study.description) if link is None else link
     check_link(model.tree.links, link)
     report = replace(report, joint_names=model.joint_names, model=model,
                      bodies=body_entries(model.tree, study.description))
     if not model.joint_names:
         return report
     index = {name: i for i, name in enumerate(model.joint_names)}
-    joints = []
+    joints: list = []
     for joint in report.joints:
         tell(0.05 + 0.5 * len(joints) / len(report.joints), f'gravity: {joint.name}')
         if joint.name in index:
