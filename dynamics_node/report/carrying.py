@@ -10,50 +10,6 @@ from .report import PayloadEntry
 # Steps down to the payload that is held everywhere; it takes two to four.
 _MOST_STEPS = 20
 _EXACT = 1e-9
-# Joints of a finger at most.
-_FINGER = 4
-
-
-def default_payload_link(tree, description):
-    """
-    Return the link that carries a payload if nobody says which.
-
-    Parameters
-    ----------
-    tree : KinematicTree
-    description : RobotDescription
-
-    Returns
-    -------
-    str
-        The last link of the longest chain; where that is a finger, the link that the fingers
-        are on.
-
-    """
-    carrier = {joint.name: joint.parent for joint in description.joints}
-    branches = np.bincount(tree.parent[tree.parent >= 0], minlength=len(tree.parent))
-    link = tree.tip_link
-    body, depth, answer = tree.links[link].body, 0, link
-    while body >= 0 and depth < _FINGER:
-        depth += 1
-        parent = int(tree.parent[body])
-        if parent >= 0 and branches[parent] > 1:
-            if not _are_fingers(tree, parent):
-                break
-            answer = carrier[tree.body_names[body]]
-        elif not tree.is_independent[body]:
-            answer = carrier[tree.body_names[body]]
-        body = parent
-    return answer
-
-
-def _are_fingers(tree, hand):
-    # Everything behind the hand is at most so many joints further.
-    depth = {hand: 0}
-    for body in range(hand + 1, len(tree.parent)):
-        if int(tree.parent[body]) in depth:
-            depth[body] = depth[int(tree.parent[body])] + 1
-    return max(depth.values()) <= _FINGER
 
 
 def payload_entry(study, link, point):

@@ -6,8 +6,8 @@ from .report import ConditioningEntry
 from ..errors import SingularMassMatrixError
 from ..model.tree import PRISMATIC
 
-# Eigenvalues take time: no more positions than this.
-_MOST_SAMPLES = 1000
+# Eigenvalues take time, which grows with the third power of the joints: fewer positions for more.
+_MOST_SAMPLES, _LEAST_SAMPLES, _WORK = 1000, 100, 50_000_000
 
 
 def conditioning_entry(study):
@@ -25,7 +25,7 @@ def conditioning_entry(study):
 
     """
     model, n = study.model, len(study.model.joint_names)
-    count = min(_MOST_SAMPLES, len(study.positions))
+    count = min(_MOST_SAMPLES, max(_LEAST_SAMPLES, _WORK // n**3), len(study.positions))
     numbers, is_definite = np.empty(count), True
     for rows in study.batches(n * n, count):
         values = np.linalg.eigvalsh(model.mass_matrix(study.positions[rows]))

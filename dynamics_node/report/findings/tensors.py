@@ -21,7 +21,7 @@ _MATTERS, _WARNS = 0.01, 0.05
 _NAMES = ('ixx', 'iyy', 'izz')
 _FACTORS = (10.0, 100.0, 1000.0)
 # Radius of gyration in units of how far the link goes, and as a share of the robot's reach.
-_LARGE, _OF_REACH = 3.0, 0.4
+_LARGE, _OF_REACH = 3.0, 0.2
 # Moments of links lighter than this share of what moves are nobody's concern.
 _LIGHT = 2e-3
 # A tensor is about the frame if Steiner's part explains so much of its products of inertia, and
