@@ -5,7 +5,7 @@ import hashlib
 from importlib import resources
 from pathlib import Path
 
-from .html_escape import script_data, text
+from .html_escape import script_data, span, text
 from .html_figures import page_data
 from .html_findings import findings_section
 from .html_joints import joints_table
@@ -150,7 +150,7 @@ def _foot(report):
     if report.payload is not None:
         how = (f'Worst torques: {count(report.samples, "pose")} drawn evenly within the limits '
                f'(seed {report.seed}), then climbed to the top. ')
-    root = f'Base frame: <span class="name">{text(report.root)}</span>. ' if report.root else ''
+    root = f'Base frame: {span(report.root)}. ' if report.root else ''
     return (f'<footer>{how}Gravity {text(vector(report.gravity))} m/s² '
             f'({text(number(sum(value**2 for value in report.gravity)**0.5))}). {root}'
             'Made by dynamics_node; this page asks the network for nothing.</footer>')

@@ -2,7 +2,7 @@
 Words of a robot description on a page: nothing in them is ever markup.
 
 A URDF may come from anybody, and a name in it may be `</script><script>alert(1)</script>`. So
-every text goes through one of these three functions on its way to the page, each for one place.
+every text goes through one of these functions on its way to the page, each for one place.
 
 """
 
@@ -25,6 +25,25 @@ def text(value):
 
     """
     return html.escape(str(value), quote=True)
+
+
+def span(value):
+    """
+    Return a name from the URDF as markup; a line may end after an underscore or a slash.
+
+    Parameters
+    ----------
+    value : object
+        Whatever `str` makes of it.
+
+    Returns
+    -------
+    str
+
+    """
+    # No entity has one of these in it.
+    breakable = text(value).replace('_', '_<wbr>').replace('/', '/<wbr>')
+    return f'<span class="name">{breakable}</span>'
 
 
 def plot_text(value):

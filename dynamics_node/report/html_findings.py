@@ -1,6 +1,6 @@
 """The findings, the worst first: colour, word and order say how bad each is."""
 
-from .html_escape import text
+from .html_escape import span, text
 from .html_numbers import count
 
 WORDS = {'problem': 'Problem', 'warning': 'Warning', 'note': 'Note'}
@@ -62,7 +62,7 @@ def _choice(report):
 
 
 def _finding(finding):
-    subjects = ', '.join(f'<span class="name">{text(name)}</span>' for name in finding.subjects)
+    subjects = ', '.join(span(name) for name in finding.subjects)
     said = [(label, sentence) for label, sentence in
             (('effect', finding.effect), ('what to do', finding.advice)) if sentence]
     details = ''.join(f'<dt>{label}</dt><dd>{text(sentence)}</dd>' for label, sentence in said)

@@ -2,7 +2,7 @@
 
 import math
 
-from .html_escape import text
+from .html_escape import span, text
 from .html_numbers import number, percent, position
 from .html_plot_worst import tone
 from .html_table import amount, Cell, Column, name, table, words
@@ -26,11 +26,12 @@ def joints_table(joints, names):
         Markup.
 
     """
+    unit = ' or '.join(sorted({joint.effort_unit for joint in joints}, reverse=True))
     columns = (Column('joint'), Column('kind'), Column('range'),
-               Column('worst gravity torque', 'N m or N', True),
-               Column('effort limit', 'N m or N', True), Column('share of the limit', '', True),
-               Column('payload left there', 'kg', True), Column('velocity limit', 'per s', True),
-               Column('friction', 'dry, viscous', True), Column('where the worst is'))
+               Column('worst gravity torque', unit, True), Column('effort limit', unit, True),
+               Column('share of the limit', '', True), Column('payload left there', 'kg', True),
+               Column('velocity limit', 'per s', True),
+               Column('friction', 'dry, viscous', True), Column('worst at'))
     slides = {joint.name: joint.kind == 'prismatic' for joint in joints}
     return table('joints', columns, [_joint(joint, names, slides) for joint in joints])
 
@@ -46,7 +47,7 @@ def _joint(joint, names, slides):
         empty = Cell('–', math.nan, 'missing')
         worst, share, left, where = empty, empty, empty, Cell('–', tone='missing')
     else:
-        worst = Cell(f'{text(number(load.worst))} {_unit(joint.effort_unit)}', load.magnitude)
+        worst = Cell(text(number(load.worst)), load.magnitude)
         share = _share(load.share)
         left = amount(load.payload_left, 3, tone='bad' if load.payload_left == 0.0 else '')
         where = Cell(_where(load.position, names, slides))
@@ -62,7 +63,7 @@ def _range(joint, is_prismatic):
     if math.isinf(joint.lower) and math.isinf(joint.upper):
         return words('without end' if not is_prismatic else 'no limits')
     ends = f'{position(joint.lower, is_prismatic)} to {position(joint.upper, is_prismatic)}'
-    return words(ends, 'doubt' if joint.lower >= joint.upper else '')
+    return words(ends, 'firm doubt' if joint.lower >= joint.upper else 'firm')
 
 
 def _share(share):
@@ -71,16 +72,12 @@ def _share(share):
     # The width of the bar inside its meter; all of it when the limit is reached.
     name_of_tone = _TONES[tone(share)]
     width = 100.0 * min(share, 1.0)
-    return Cell(f'{percent(share)}<span class="meter"><i class="{name_of_tone}" '
-                f'style="width:{width:.1f}%"></i></span>', share, name_of_tone)
+    return Cell(f'<span class="meter"><i class="{name_of_tone}" style="width:{width:.1f}%"></i>'
+                f'</span>{percent(share)}', share, name_of_tone)
 
 
 def _where(values, names, slides):
     lines = ', '.join(
-        f'<span class="name">{text(joint)}</span> {position(value, slides[joint])}'
+        f'{span(joint)} {position(value, slides[joint])}'
         for joint, value in zip(names, values, strict=True))
     return f'<details><summary>pose</summary>{lines}</details>'
-
-
-def _unit(unit):
-    return f'<span class="unit">{unit}</span>'

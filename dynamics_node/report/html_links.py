@@ -1,6 +1,6 @@
 """The tables of links, as they stand in the URDF, and of bodies, as joints move them."""
 
-from .html_escape import text
+from .html_escape import span, text
 from .html_numbers import MISSING, vector
 from .html_table import amount, Cell, Column, name, table, words
 
@@ -57,7 +57,7 @@ def _link(link):
 
 
 def _body(body):
-    lumped = ', '.join(f'<span class="name">{text(link)}</span>' for link in body.lumped)
+    lumped = ', '.join(span(link) for link in body.lumped)
     return (name(body.joint), name(body.link), Cell(lumped or MISSING,
                                                     tone='' if lumped else 'missing'),
             amount(body.mass, tone='' if body.mass > 0.0 else 'doubt'), _vector(body.com),

@@ -4,6 +4,7 @@ import math
 
 _RAISED = str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹')
 MISSING = '–'
+_HARD = '\u00a0'  # a space at which no line ends
 
 
 def number(value, digits=4):
@@ -40,24 +41,29 @@ def number(value, digits=4):
     return sign + (shown.rstrip('0').rstrip('.') if '.' in shown else shown)
 
 
+def quantity(value, unit, digits=4):
+    """Return a number with its unit on one line: '44.76 N m'."""
+    return f'{number(value, digits)} {unit}'.replace(' ', _HARD)
+
+
 def percent(share):
     """Return a share as text, '57 %'; '–' for NaN."""
     if share is None or math.isnan(share):
         return MISSING
     if math.isinf(share):
-        return '∞ %'
+        return f'∞{_HARD}%'
     if 0.0 < share < 0.1:
-        return f'{number(100.0 * share, 2)} %'
+        return f'{number(100.0 * share, 2)}{_HARD}%'
     # 99.6 % of a limit is not all of it, and 100.4 % is more.
     if round(100.0 * share) == 100 and share != 1.0:
-        return f'{100.0 * share:.1f} %' if abs(share - 1.0) >= 5e-4 else '100 %'
-    return f'{100.0 * share:.0f} %'
+        return f'{100.0 * share:.{1 if abs(share - 1.0) >= 5e-4 else 0}f}{_HARD}%'
+    return f'{100.0 * share:.0f}{_HARD}%'
 
 
 def position(value, is_prismatic):
     """Return a joint position with its unit: '-92.5°' from rad, or '0.12 m'."""
     if is_prismatic:
-        return f'{number(value)} m'
+        return quantity(value, 'm')
     if not math.isfinite(value):
         return f'{number(value)}°'
     degrees = round(math.degrees(value), 1)

@@ -2,8 +2,8 @@
 
 import math
 
-from .html_escape import text
-from .html_numbers import count, number, position, vector
+from .html_escape import span, text
+from .html_numbers import count, number, position, quantity, vector
 
 
 def payload_section(report):
@@ -22,7 +22,7 @@ def payload_section(report):
 
     """
     payload = report.payload
-    facts = [('carried by', _name(payload.link)),
+    facts = [('carried by', span(payload.link)),
              ('at the point', f'{text(vector(payload.point))} m, in the frame of the link')]
     if not payload.is_moved:
         facts.append(('at every pose', 'no joint moves this link'))
@@ -34,7 +34,7 @@ def payload_section(report):
         if payload.best_joint is not None:
             facts.append(('the best pose', _pose(report, payload.best_position)))
     if payload.unlimited_joints:
-        names = ', '.join(_name(joint) for joint in payload.unlimited_joints)
+        names = ', '.join(span(joint) for joint in payload.unlimited_joints)
         facts.append(('not counted', f'without an effort limit: {names}'))
     return _section('payload', 'Payload', 'The point mass that can be held at rest within the '
                     'effort limits.', facts)
@@ -58,7 +58,7 @@ def conditioning_section(report):
     D = report.conditioning
     facts = [('median', number(D.median, 3)), ('worst', number(D.worst, 3)),
              ('the worst pose', _pose(report, D.position)),
-             ('moves the least', _name(D.weakest_joint)),
+             ('moves the least', span(D.weakest_joint)),
              ('positive definite', f'at all of {count(D.samples, "pose")}'
               if D.is_positive_definite else '<span class="bad">not at every pose</span>')]
     if D.has_mixed_units:
@@ -72,19 +72,15 @@ def conditioning_section(report):
 def _held(mass, joint):
     if math.isinf(mass):
         return 'no effort limit is in the way'
-    by = '' if joint is None else f', limited by {_name(joint)}'
-    return f'<b>{number(mass, 3)} kg</b>{by}'
+    by = '' if joint is None else f', limited by {span(joint)}'
+    return f'<b>{quantity(mass, "kg", 3)}</b>{by}'
 
 
 def _pose(report, values):
     slides = {joint.name: joint.kind == 'prismatic' for joint in report.joints}
-    lines = ', '.join(f'{_name(name)} {position(value, slides[name])}'
+    lines = ', '.join(f'{span(name)} {position(value, slides[name])}'
                       for name, value in zip(report.joint_names, values, strict=True))
     return f'<details><summary>{count(len(values), "joint")}</summary>{lines}</details>'
-
-
-def _name(value):
-    return f'<span class="name">{text(value)}</span>'
 
 
 def _section(identifier, title, lead, facts):

@@ -4,7 +4,7 @@ from itertools import pairwise
 import math
 
 from .html_escape import plot_text
-from .html_numbers import number, position
+from .html_numbers import number, position, quantity
 from .html_plot_parts import axis, color, layout
 
 HEIGHT = 300  # [px]
@@ -33,14 +33,14 @@ def curve_figure(joint, own_position):
     places = [scale * value for value in load.curve_positions]
     data = [
         {'type': 'scatter', 'mode': 'lines', 'x': places, 'y': list(load.curve_torques),
-         'line': {'color': color('accent'), 'width': 2.5}, 'name': plot_text(joint.name),
+         'line': {'color': color('accent'), 'width': 2.5, 'shape': 'spline'}, 'name': plot_text(joint.name),
          'hovertemplate': f'%{{x:.4g}}{" m" if slides else "°"}: %{{y:.4g}} {unit}'
                           '<extra></extra>'},
         {'type': 'scatter', 'mode': 'markers', 'x': [scale * own_position], 'y': [load.worst],
          'marker': {'color': color('mass'), 'size': 11,
                     'line': {'color': color('card'), 'width': 2}},
          'hoverinfo': 'text', 'name': 'worst',
-         'hovertext': [f'worst: {number(load.worst)} {unit} at '
+         'hovertext': [f'worst: {quantity(load.worst, unit)} at '
                        f'{position(own_position, slides)}']}]
     shapes, notes = [], []
     ends = [*load.curve_torques, load.worst, 0.0]
@@ -53,7 +53,7 @@ def curve_figure(joint, own_position):
             shapes.append({'type': 'line', 'xref': 'paper', 'x0': 0, 'x1': 1, 'y0': limit,
                            'y1': limit,
                            'line': {'color': color('problem'), 'width': 1.5, 'dash': 'dot'}})
-            notes.append({'xref': 'paper', 'x': 1, 'y': limit, 'xanchor': 'right',
+            notes.append({'xref': 'paper', 'x': 0.01, 'y': limit, 'xanchor': 'left',
                           'yanchor': 'bottom' if limit > 0.0 else 'top', 'showarrow': False,
                           'text': 'effort limit',
                           'font': {'size': 11, 'color': color('problem')}})

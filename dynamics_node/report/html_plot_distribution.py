@@ -3,7 +3,7 @@
 import math
 
 from .html_escape import plot_text
-from .html_numbers import number, percent
+from .html_numbers import percent, quantity
 from .html_plot_parts import axis, color, layout, MARGINS, ROW, rows
 
 
@@ -78,5 +78,5 @@ def _sentence(joint):
         value = quantile(load, level)
         share = '' if math.isnan(joint.effort) or joint.effort <= 0.0 else (
             f', {percent(value / joint.effort)}')
-        parts.append(f'{word}: up to {number(value)} {unit}{share}')
+        parts.append(f'{word}: up to {quantity(value, unit)}{share}')
     return '<br>'.join(parts)

@@ -29,7 +29,7 @@ def rows(names):
 
     """
     count = len(names)
-    return {'tickmode': 'array', 'tickvals': list(range(count)),
+    return {'type': 'linear', 'tickmode': 'array', 'tickvals': list(range(count)),
             'ticktext': [short(name) for name in names], 'range': [count - 0.4, -0.6],
             'ticks': '', 'zeroline': False, 'showgrid': False, 'automargin': True,
             'fixedrange': True, 'color': color('ink'), 'tickfont': {'size': 12}}
@@ -37,7 +37,7 @@ def rows(names):
 
 def axis(title, **more):
     """Return a horizontal or vertical axis of numbers."""
-    return {'title': {'text': title, 'font': {'size': 12}}, 'gridcolor': color('grid'),
+    return {'type': 'linear', 'title': {'text': title, 'font': {'size': 12}}, 'gridcolor': color('grid'),
             'zerolinecolor': color('line'), 'zerolinewidth': 1, 'linecolor': color('line'),
             'color': color('muted'), 'automargin': True, 'tickfont': {'size': 12}, **more}
 
@@ -50,4 +50,7 @@ def layout(**more):
             'margin': {'l': 10, 'r': 14, 't': 12, 'b': 44}, 'showlegend': False,
             'hoverlabel': {'bgcolor': color('raised'), 'bordercolor': color('line'),
                            'font': {'color': color('ink')}, 'align': 'left', 'namelength': -1},
-            'bargap': 0.38, **more}
+            'modebar': {'bgcolor': 'rgba(0,0,0,0)', 'color': color('faint'),
+                        'activecolor': color('accent')},
+            # A finger that scrolls the page must not zoom into a plot.
+            'dragmode': False, 'bargap': 0.38, **more}

@@ -3,7 +3,7 @@
 import math
 
 from .html_escape import plot_text
-from .html_numbers import number, percent
+from .html_numbers import number, percent, quantity
 from .html_plot_parts import axis, color, layout, MARGINS, ROW, rows
 
 TIGHT = 0.8  # of the limit: what is left above is needed to move
@@ -88,7 +88,7 @@ def _finite(value, otherwise=None):
 
 def _share_label(joint):
     if math.isnan(joint.gravity.share):
-        return f'no limit, {number(joint.gravity.magnitude, 3)} {joint.effort_unit}'
+        return f'no limit, {quantity(joint.gravity.magnitude, joint.effort_unit, 3)}'
     return percent(joint.gravity.share)
 
 
@@ -100,10 +100,10 @@ def _torque_label(joint):
 
 def _sentence(joint):
     load = joint.gravity
-    lines = [joint.name, f'worst {number(load.worst)} {joint.effort_unit}']
+    lines = [joint.name, f'worst {quantity(load.worst, joint.effort_unit)}']
     if math.isnan(joint.effort):
         lines.append('no effort limit')
     else:
-        lines.append(f'limit {number(joint.effort)} {joint.effort_unit}, '
+        lines.append(f'limit {quantity(joint.effort, joint.effort_unit)}, '
                      f'{percent(load.share)} of it')
     return '\n'.join(lines)

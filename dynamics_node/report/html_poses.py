@@ -1,6 +1,6 @@
 """The poses that the 3D view can show at the press of a button."""
 
-from .html_numbers import number, percent
+from .html_numbers import number, percent, quantity
 
 
 def poses(report):
@@ -25,11 +25,11 @@ def poses(report):
     if payload is not None and payload.limiting_position is not None:
         found.append(_pose(
             'least payload', f'Here {payload.limiting_joint} is at its limit with '
-            f'{number(payload.everywhere, 3)} kg at {payload.link}: what can be held at every '
-            'pose.', payload.limiting_position))
+            f'{quantity(payload.everywhere, "kg", 3)} at {payload.link}: that can be held at '
+            'every pose.', payload.limiting_position))
     if payload is not None and payload.best_position and payload.best_joint is not None:
         found.append(_pose(
-            'most payload', f'The best of the sampled poses: {number(payload.best, 3)} kg at '
+            'most payload', f'The best of the sampled poses: {quantity(payload.best, "kg", 3)} at '
             f'{payload.link}, limited by {payload.best_joint}.', payload.best_position))
     D = report.conditioning
     if D is not None:
@@ -47,9 +47,9 @@ def _worst(joint):
     load = joint.gravity
     share = load.share
     of_limit = '' if share != share else (
-        f', {percent(share)} of its limit of {number(joint.effort)} {joint.effort_unit}')
-    return (f'The worst pose of {joint.name}: gravity asks for {number(load.worst)} '
-            f'{joint.effort_unit}{of_limit}.')
+        f', {percent(share)} of its limit of {quantity(joint.effort, joint.effort_unit)}')
+    return (f'The worst pose of {joint.name}: gravity asks for '
+            f'{quantity(load.worst, joint.effort_unit)}{of_limit}.')
 
 
 def _pose(label, caption, q, joint=None):

@@ -4,7 +4,7 @@ import math
 
 from .html_escape import text
 from .html_findings import headline
-from .html_numbers import count, number, percent
+from .html_numbers import count, number, percent, quantity
 from .html_plot_worst import tone
 
 
@@ -23,7 +23,7 @@ def summary(report):
 
     """
     verdict, kind = _verdict(report)
-    return (f'<header><div><div class="kicker">Model report</div><div class="title">'
+    return (f'<header><div><div class="kicker">Model report</div><div class="titleline">'
             f'<h1>{text(report.robot or "robot without a name")}</h1>'
             f'<span class="badge {kind}">{verdict}</span></div>'
             f'<p class="lead">{_lead(report)}</p>'
@@ -52,7 +52,7 @@ def _lead(report):
 
 def _tiles(report):
     yield _tile('mass', number(report.total_mass), 'kg',
-                f'{number(report.moving_mass)} kg of it moves'
+                f'{quantity(report.moving_mass, "kg")} of it moves'
                 if report.verdict != 'refused' else 'of the links that could be read')
     loads = [joint for joint in report.joints if joint.gravity is not None]
     limited = [joint for joint in loads if math.isfinite(joint.gravity.share)]
@@ -60,7 +60,7 @@ def _tiles(report):
         worst = max(limited, key=lambda joint: joint.gravity.share)
         yield _tile('largest share of an effort limit', percent(worst.gravity.share), '',
                     f'{worst.name}: {number(worst.gravity.magnitude, 3)} of '
-                    f'{number(worst.effort)} {worst.effort_unit} for gravity',
+                    f'{quantity(worst.effort, worst.effort_unit)} for gravity',
                     tone(worst.gravity.share))
     elif loads:
         worst = max(loads, key=lambda joint: joint.gravity.magnitude)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 import math
 
-from .html_escape import text
+from .html_escape import span, text
 from .html_numbers import number
 
 
@@ -55,7 +55,7 @@ def words(value, tone=''):
 
 def name(value):
     """Return a cell with a name from the URDF."""
-    return Cell(f'<span class="name">{text(value)}</span>')
+    return Cell(span(value))
 
 
 def amount(value, digits=4, tone=''):
@@ -83,7 +83,7 @@ def table(label, columns, lines):
 
     """
     head = ''.join(
-        f'<th scope="col"{_numeric(column)}>{text(column.title)}'
+        f'<th scope="col"{_numeric(column)}><span class="title">{text(column.title)}</span>'
         + (f' <span class="unit">{text(column.unit)}</span>' if column.unit else '') + '</th>'
         for column in columns)
     body = '\n'.join(f'<tr>{_line(columns, line)}</tr>' for line in lines)

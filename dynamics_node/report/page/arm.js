@@ -91,6 +91,9 @@ const arm = (() => {
       joints: found.map((own) => [own[3], own[7], own[11]]),
       axes: found.map((own, k) => [-axisLength, axisLength].map((way) => (
         kinematics.at(own, robot.axis[k].map((x) => x * way))))),
+      // Out of the ball that may sit on the joint.
+      longAxes: found.map((own, k) => [-1, 1].map((way) => (kinematics.at(own,
+        robot.axis[k].map((x) => x * way * (2 * axisLength + 1.2 * robot.ball[k])))))),
       centers: found.map((_, k) => center(k)),
       balls: found.map((_, k) => ({ center: center(k),
         columns: [[robot.ball[k], 0, 0], [0, robot.ball[k], 0], [0, 0, robot.ball[k]]] })),
@@ -133,14 +136,37 @@ const arm = (() => {
       centers: { type: 'scatter3d', mode: 'markers', name: 'centres of mass',
         hoverinfo: 'text', text: labels.bodies,
         marker: { size: 3, color: { css: 'mass' } } },
+      gravity: { type: 'scatter3d', mode: 'lines', name: 'gravity', hoverinfo: 'skip',
+        line: { width: 5, color: { css: 'faint' } } },
+      arrow: { type: 'cone', name: 'gravity', sizemode: 'absolute', anchor: 'cm',
+        showscale: false, colorscale: [[0, { css: 'faint' }], [1, { css: 'faint' }]],
+        hoverinfo: 'text', text: `gravity ${digits(Math.hypot(...robot.gravity))} m/s²` },
     };
+
+    // The longest side is 1, so that the camera sees a small and a long robot alike.
+    function aspect(room) {
+      const [x, y, z] = ends.map(([low, high]) => (high - low + 2 * room) / (size() + 2 * room));
+      return { x, y, z };
+    }
+
+    // An arrow at the edge of the picture, where no arm is in its way.
+    function gravityArrow() {
+      const strength = Math.hypot(...robot.gravity);
+      const way = robot.gravity.map((x) => (strength > 0 ? 0.16 * size() * x / strength : 0));
+      const from = [ends[0][0], ends[1][1], ends[2][1]];
+      const to = from.map((x, i) => x + way[i]);
+      return [
+        { ...look.gravity, ...lines([[from, to]]) },
+        { ...look.arrow, x: [to[0]], y: [to[1]], z: [to[2]], u: [way[0]], v: [way[1]],
+          w: [way[2]], sizeref: 0.05 * size(), visible: strength > 0 }];
+    }
 
     function figure() {
       const shape = geometry(robot, state.q, axisLength);
       grow(ends, shape.sticks.flat());
       fill(look.balls, shape.balls);
       fill(look.ellipsoids, shape.ellipsoids);
-      const chosen = shape.axes.filter((_, k) => robot.coordinate[k] === state.joint);
+      const chosen = shape.longAxes.filter((_, k) => robot.coordinate[k] === state.joint);
       const traces = [
         { ...look.sticks, ...lines(shape.sticks) },
         { ...look.axes, ...lines(shape.axes), visible: state.shown.axes },
@@ -148,21 +174,25 @@ const arm = (() => {
         { ...look.joints, ...points(shape.joints) },
         { ...look.balls, visible: state.shown.masses },
         { ...look.ellipsoids, visible: state.shown.ellipsoids },
-        { ...look.centers, ...points(shape.centers), visible: state.shown.masses }];
+        { ...look.centers, ...points(shape.centers), visible: state.shown.masses },
+        ...gravityArrow()];
       traces.forEach((trace) => delete trace.ball);
       const room = 0.08 * size();
-      const side = (title, i) => ({ title: { text: title, font: { size: 11 } },
+      const side = (i) => ({ title: { text: '' }, ticksuffix: ' m',
         range: [ends[i][0] - room, ends[i][1] + room], color: { css: 'muted' },
         gridcolor: { css: 'line' }, zerolinecolor: { css: 'line' }, showbackground: false,
         tickfont: { size: 10 }, nticks: 5, showspikes: false });
       return { data: traces, layout: {
         paper_bgcolor: 'rgba(0,0,0,0)', margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false,
         font: { color: { css: 'ink' }, family: 'system-ui, -apple-system, Segoe UI, Arial' },
+        modebar: { bgcolor: 'rgba(0,0,0,0)', color: { css: 'faint' },
+          activecolor: { css: 'accent' } },
         hoverlabel: { bgcolor: { css: 'raised' }, bordercolor: { css: 'line' },
           font: { color: { css: 'ink' } }, align: 'left', namelength: -1 },
-        scene: { xaxis: side('x [m]', 0), yaxis: side('y [m]', 1), zaxis: side('z [m]', 2),
-          aspectmode: 'data', uirevision: 'kept', dragmode: 'turntable',
-          camera: { eye: { x: 1.25, y: -1.35, z: 0.65 }, projection: { type: 'perspective' } } },
+        scene: { xaxis: side(0), yaxis: side(1), zaxis: side(2),
+          aspectmode: 'manual', aspectratio: aspect(room), uirevision: 'kept',
+          dragmode: 'turntable',
+          camera: { eye: { x: 0.86, y: -0.92, z: 0.42 }, center: { x: 0, y: 0, z: -0.06 }, projection: { type: 'perspective' } } },
         uirevision: 'kept' } };
     }
 
@@ -236,7 +266,6 @@ const arm = (() => {
       if (detail.from !== 'arm') rows[detail.place].reveal();
     });
     document.addEventListener('recolor', draw);
-    take(poses[0]);
   }
 
   // A joint: its name (a button to its worst pose), its torque, its slider.
@@ -264,6 +293,8 @@ const arm = (() => {
     const position = make('span', slide);
     const bar = make('i', make('span', element, 'meter'));
     const limit = robot.limit[place];
+    // Not worth a power of ten beside the weight of the robot.
+    const rounding = 1e-8 * robot.mass.reduce((sum, mass) => sum + mass, 0);
     const unit = robot.prismatic[place] ? 'N' : 'N m';
     input.addEventListener('input', () => moved(Number(input.value)));
     button.addEventListener('click', chosen);
@@ -273,7 +304,7 @@ const arm = (() => {
         : `${(q * 180 / Math.PI).toFixed(1).replace('-', '−')}°`;
       const share = limit > 0 ? Math.abs(effort) / limit : null;
       torque.replaceChildren();
-      make('b', torque).textContent = digits(Math.abs(effort) < 1e-9 ? 0 : effort);
+      make('b', torque).textContent = digits(Math.abs(effort) < rounding ? 0 : effort);
       torque.append(` ${unit}${share === null ? '' : `, ${(100 * share).toFixed(0)} %`}`);
       bar.style.width = `${share === null ? 0 : 100 * Math.min(share, 1)}%`;
       bar.className = share > 1 ? 'bad' : share > 0.8 ? 'doubt' : '';

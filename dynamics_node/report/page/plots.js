@@ -2,9 +2,17 @@
 const plots = (() => {
   'use strict';
 
-  const config = { responsive: true, displaylogo: false, displayModeBar: 'hover',
-    modeBarButtonsToRemove: ['select2d', 'lasso2d', 'autoScale2d'], doubleClick: 'reset' };
+  // Plotly's button that sends a chart to its makers has no place here.
+  const config = { displaylogo: false, displayModeBar: 'hover',
+    showSendToCloud: false, plotlyServerURL: '', showTips: false,
+    modeBarButtonsToRemove: ['zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'select2d', 'lasso2d',
+      'autoScale2d', 'resetScale2d', 'resetCameraLastSave3d', 'tableRotation', 'orbitRotation',
+      'zoom3d'] };
   const drawn = new Map();
+  // plotly itself only sees that the window changes its size.
+  const sizes = new ResizeObserver((entries) => entries.forEach(({ target }) => {
+    if (target.data && target.clientWidth) Plotly.Plots.resize(target);
+  }));
 
   // A colour is {css: name} in a figure, so that no text of a robot can be taken for one.
   function resolve(value, style) {
@@ -20,6 +28,7 @@ const plots = (() => {
   function draw(id, figure, height = figure.height) {
     const place = document.getElementById(id);
     if (height) place.style.height = `${height}px`;
+    if (!drawn.has(id)) sizes.observe(place);
     drawn.set(id, figure);
     const { data, layout } = colors({ data: figure.data, layout: figure.layout });
     return Plotly.react(place, data, layout, config);
@@ -59,7 +68,6 @@ const plots = (() => {
     };
     select.addEventListener('change', () => choose(Number(select.value), 'select'));
     document.addEventListener('joint', ({ detail }) => show(detail.place));
-    show(figures.first);
   }
 
   // Tell all parts of the page which joint is looked at.
