@@ -3,6 +3,7 @@
 from .html_escape import span, text
 from .html_numbers import count
 
+_FEW = 4  # names in a headline
 WORDS = {'problem': 'Problem', 'warning': 'Warning', 'note': 'Note'}
 
 
@@ -22,8 +23,8 @@ def findings_section(report):
     """
     parts = ['<section id="findings"><h2>Findings</h2>']
     if report.verdict == 'refused':
-        parts.append('<p class="quiet">This description cannot be used as it is. Everything that '
-                     'is wrong with it stands here; mend it and make the report again.</p>')
+        parts.append('<p class="quiet">This description cannot be used as it is. Mend what '
+                     'is wrong with it and make the report again.</p>')
         parts.append(_refusals(report))
     elif not report.findings:
         parts.append('<p class="none">Nothing looks wrong.</p>')
@@ -42,12 +43,7 @@ def headline(report):
 
 
 def _refusals(report):
-    # What a finding says already is not said twice.
-    said = ' '.join(finding.what for finding in report.findings)
-    rest = [reason for reason in report.refusals if reason not in said]
-    if not rest:
-        return ''
-    items = ''.join(f'<p>{text(reason)}</p>' for reason in rest)
+    items = ''.join(f'<p>{text(_sentence(reason))}</p>' for reason in report.refusals)
     return (f'<article class="finding problem"><h3><span class="word">Refused</span></h3>'
             f'{items}</article>')
 
@@ -61,14 +57,22 @@ def _choice(report):
     return f'<div class="tools severities" hidden>{"".join(chips)}</div>'
 
 
+def _sentence(words):
+    return words[:1].upper() + words[1:]
+
+
 def _finding(finding):
-    subjects = ', '.join(span(name) for name in finding.subjects)
+    subjects = ', '.join(span(name) for name in finding.subjects[:_FEW])
+    others = finding.subjects[_FEW:]
+    if others:
+        subjects += (f' <details><summary>and {len(others)} more</summary>'
+                     f'{", ".join(span(name) for name in others)}</details>')
     said = [(label, sentence) for label, sentence in
             (('effect', finding.effect), ('what to do', finding.advice)) if sentence]
-    details = ''.join(f'<dt>{label}</dt><dd>{text(sentence)}</dd>' for label, sentence in said)
+    details = ''.join(f'<dt>{label}</dt><dd>{text(_sentence(sentence))}</dd>' for label, sentence in said)
     return (f'<article class="finding {text(finding.severity)}"><h3>'
             f'<span class="word">{WORDS[finding.severity]}</span>'
             f'<span>{subjects or "the whole robot"}</span>'
             f'<span class="kind">{text(finding.kind)}</span></h3>'
-            f'<p>{text(finding.what)}</p>'
+            f'<p>{text(_sentence(finding.what))}</p>'
             + (f'<dl>{details}</dl>' if details else '') + '</article>')

@@ -33,7 +33,8 @@ def curve_figure(joint, own_position):
     places = [scale * value for value in load.curve_positions]
     data = [
         {'type': 'scatter', 'mode': 'lines', 'x': places, 'y': list(load.curve_torques),
-         'line': {'color': color('accent'), 'width': 2.5, 'shape': 'spline'}, 'name': plot_text(joint.name),
+         'line': {'color': color('accent'), 'width': 2.5, 'shape': 'spline'},
+         'name': plot_text(joint.name),
          'hovertemplate': f'%{{x:.4g}}{" m" if slides else "°"}: %{{y:.4g}} {unit}'
                           '<extra></extra>'},
         {'type': 'scatter', 'mode': 'markers', 'x': [scale * own_position], 'y': [load.worst],

@@ -41,8 +41,8 @@ def _verdict(report):
 
 
 def _lead(report):
-    joints = count(len(report.joint_names), 'joint')
     followers = sum(joint.mimics is not None for joint in report.joints)
+    joints = count(len(report.joints) - followers, 'joint')
     if followers:
         joints += f' and {followers} that {"follow" if followers > 1 else "follows"} them'
     found = headline(report)

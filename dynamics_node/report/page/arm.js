@@ -2,7 +2,7 @@
 const arm = (() => {
   'use strict';
 
-  // A ball of triangles: an octahedron, each side cut into four, twice or three times.
+  // A ball of triangles: an octahedron, each side cut into four, once or twice.
   function makeBall(cuts) {
     let corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
     let sides = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4],
@@ -105,10 +105,17 @@ const arm = (() => {
     };
   }
 
-  function grow(ends, list) {
+  // Points that the picture must hold: the sticks and the corners around balls and shells.
+  function outline(shape) {
+    const corners = [...shape.balls, ...shape.ellipsoids].flatMap(({ center, columns }) => (
+      [-1, 1].map((way) => center.map((x, i) => x + way * Math.hypot(...columns[i])))));
+    return [...shape.sticks.flat(), ...corners];
+  }
+
+  function grow(seen, list) {
     list.forEach((point) => point.forEach((x, i) => {
-      ends[i][0] = Math.min(ends[i][0], x);
-      ends[i][1] = Math.max(ends[i][1], x);
+      seen[i][0] = Math.min(seen[i][0], x);
+      seen[i][1] = Math.max(seen[i][1], x);
     }));
   }
 
@@ -116,11 +123,11 @@ const arm = (() => {
     const state = { q: robot.neutral.slice(), joint: null,
       shown: { masses: true, ellipsoids: true, axes: true } };
     const caption = document.getElementById('arm-caption');
-    const ends = [[0, 0], [0, 0], [0, 0]];
-    poses.forEach(({ q }) => grow(ends, geometry(robot, q, 0).sticks.flat()));
-    const size = () => Math.max(...ends.map(([low, high]) => high - low), 1e-6);
+    const seen = [[0, 0], [0, 0], [0, 0]];
+    poses.forEach(({ q }) => grow(seen, outline(geometry(robot, q, 0))));
+    const size = () => Math.max(...seen.map(([low, high]) => high - low), 1e-6);
     const axisLength = 0.035 * size();
-    const cuts = robot.body.length > 24 ? 1 : 2;
+    const cuts = robot.body.length > 60 ? 1 : 2;
     const look = {
       sticks: { type: 'scatter3d', mode: 'lines', name: 'links', hoverinfo: 'skip',
         line: { width: 7, color: { css: 'muted' } } },
@@ -143,17 +150,28 @@ const arm = (() => {
         hoverinfo: 'text', text: `gravity ${digits(Math.hypot(...robot.gravity))} m/s²` },
     };
 
+    // What is shown: all that was seen, and no side much shorter than the others.
+    function box() {
+      const room = 0.05 * size();
+      return seen.map(([low, high]) => {
+        const half = Math.max((high - low) / 2 + room, 0.35 * size());
+        return [(low + high) / 2 - half, (low + high) / 2 + half];
+      });
+    }
+
     // The longest side is 1, so that the camera sees a small and a long robot alike.
-    function aspect(room) {
-      const [x, y, z] = ends.map(([low, high]) => (high - low + 2 * room) / (size() + 2 * room));
+    function aspect(ends) {
+      const sides = ends.map(([low, high]) => high - low);
+      const [x, y, z] = sides.map((side) => side / Math.max(...sides));
       return { x, y, z };
     }
 
     // An arrow at the edge of the picture, where no arm is in its way.
-    function gravityArrow() {
+    function gravityArrow(ends) {
       const strength = Math.hypot(...robot.gravity);
       const way = robot.gravity.map((x) => (strength > 0 ? 0.16 * size() * x / strength : 0));
-      const from = [ends[0][0], ends[1][1], ends[2][1]];
+      const from = [0.9 * ends[0][0] + 0.1 * ends[0][1], 0.1 * ends[1][0] + 0.9 * ends[1][1],
+        0.1 * ends[2][0] + 0.9 * ends[2][1]];
       const to = from.map((x, i) => x + way[i]);
       return [
         { ...look.gravity, ...lines([[from, to]]) },
@@ -163,7 +181,8 @@ const arm = (() => {
 
     function figure() {
       const shape = geometry(robot, state.q, axisLength);
-      grow(ends, shape.sticks.flat());
+      grow(seen, outline(shape));
+      const ends = box();
       fill(look.balls, shape.balls);
       fill(look.ellipsoids, shape.ellipsoids);
       const chosen = shape.longAxes.filter((_, k) => robot.coordinate[k] === state.joint);
@@ -175,11 +194,10 @@ const arm = (() => {
         { ...look.balls, visible: state.shown.masses },
         { ...look.ellipsoids, visible: state.shown.ellipsoids },
         { ...look.centers, ...points(shape.centers), visible: state.shown.masses },
-        ...gravityArrow()];
+        ...gravityArrow(ends)];
       traces.forEach((trace) => delete trace.ball);
-      const room = 0.08 * size();
       const side = (i) => ({ title: { text: '' }, ticksuffix: ' m',
-        range: [ends[i][0] - room, ends[i][1] + room], color: { css: 'muted' },
+        range: ends[i], color: { css: 'muted' },
         gridcolor: { css: 'line' }, zerolinecolor: { css: 'line' }, showbackground: false,
         tickfont: { size: 10 }, nticks: 5, showspikes: false });
       return { data: traces, layout: {
@@ -190,9 +208,9 @@ const arm = (() => {
         hoverlabel: { bgcolor: { css: 'raised' }, bordercolor: { css: 'line' },
           font: { color: { css: 'ink' } }, align: 'left', namelength: -1 },
         scene: { xaxis: side(0), yaxis: side(1), zaxis: side(2),
-          aspectmode: 'manual', aspectratio: aspect(room), uirevision: 'kept',
+          aspectmode: 'manual', aspectratio: aspect(ends), uirevision: 'kept',
           dragmode: 'turntable',
-          camera: { eye: { x: 0.86, y: -0.92, z: 0.42 }, center: { x: 0, y: 0, z: -0.06 }, projection: { type: 'perspective' } } },
+          camera: { eye: { x: 0.95, y: -1.02, z: 0.46 }, center: { x: 0, y: 0, z: -0.06 }, projection: { type: 'perspective' } } },
         uirevision: 'kept' } };
     }
 
@@ -300,8 +318,9 @@ const arm = (() => {
     button.addEventListener('click', chosen);
     const show = (q, effort, isChosen) => {
       input.value = q;
+      const degrees = (q * 180 / Math.PI).toFixed(1).replace(/^-0\.0$/, '0.0');
       position.textContent = robot.prismatic[place] ? `${digits(q)} m`
-        : `${(q * 180 / Math.PI).toFixed(1).replace('-', '−')}°`;
+        : `${degrees.replace('-', '−')}°`;
       const share = limit > 0 ? Math.abs(effort) / limit : null;
       torque.replaceChildren();
       make('b', torque).textContent = digits(Math.abs(effort) < rounding ? 0 : effort);
