@@ -11,7 +11,9 @@ const plots = (() => {
   const drawn = new Map();
   // plotly itself only sees that the window changes its size.
   const sizes = new ResizeObserver((entries) => entries.forEach(({ target }) => {
-    if (target.data && target.clientWidth) Plotly.Plots.resize(target);
+    const { width, height } = target._fullLayout ?? {};
+    const fits = width === target.clientWidth && height === target.clientHeight;
+    if (width && target.clientWidth && !fits) Plotly.Plots.resize(target);
   }));
 
   // A colour is {css: name} in a figure, so that no text of a robot can be taken for one.
