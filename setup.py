@@ -43,6 +43,7 @@ setup(
             'dynamics_node = dynamics_node.ros.main:main',
             'simulated_robot = dynamics_node.ros.demo.simulated_robot:main',
             'demo = dynamics_node.ros.demo.demo:main',
+            'report = dynamics_node.report.__main__:main',
         ],
     },
 )

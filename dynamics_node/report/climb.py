@@ -8,14 +8,14 @@ from ..model.tree import PRISMATIC
 
 # Sweeps over all coordinates, and the gain, relative to the torque, at which one is the last.
 _MOST_SWEEPS = 400
-_GAIN = 1e-13
+_GAIN = 1e-11
 # So many of the climbing positions go on after the first sweeps.
 _FIRST_SWEEPS, _SURVIVORS = 3, 4
 # How much further to go in the direction in which a whole sweep went.
 _STRIDES = np.array([1.0, 3.0, 10.0, 30.0, 100.0])
 # Positions along a coordinate that other joints mimic, where G is no plain sine; and how often
 # the interval around the best is divided anew.
-_GRID, _ZOOMS = 33, 6
+_GRID, _ZOOMS = 9, 6
 
 
 class Climber:
@@ -49,7 +49,7 @@ class Climber:
         """Return the same for another inertia of the same robot."""
         return type(self)(model, self._ranges)
 
-    def climb(self, joint, starts):
+    def climb(self, joint, starts, sign):
         """
         Return where the torque of a joint is largest in magnitude.
 
@@ -58,7 +58,9 @@ class Climber:
         joint : int
             Index into the n joints.
         starts : numpy.ndarray, shape (B, n)
-            Where to begin; from each one up and one down.
+            Where to begin.
+        sign : numpy.ndarray, shape (B,)
+            1 where to go for the largest torque, -1 for the smallest.
 
         Returns
         -------
@@ -68,8 +70,7 @@ class Climber:
 
         """
         coordinates = [c for c in self._related[joint] if self._ranges[c, 0] < self._ranges[c, 1]]
-        q = np.concatenate((starts, starts))
-        sign = np.repeat([1.0, -1.0], len(starts))
+        q = starts.copy()
         value = sign * self._torque(joint, q)
         for sweep in range(_MOST_SWEEPS):
             before, start = value.max(), q.copy()

@@ -33,10 +33,13 @@ def gravity_load(study, joint, link, point):
     position, torque = study.worst[joint]
     limit = float(study.model.effort_limits[joint])
     magnitudes = np.abs(study.torques[:, joint])
+    magnitudes[magnitudes <= study.rounding] = 0.0
     counts, edges = np.histogram(magnitudes, _BINS, range=(0.0, abs(torque) or 1.0))
     places = np.linspace(*study.ranges[joint], _CURVE)
     along = np.repeat(position[None], len(places), axis=0)
     along[:, joint] = places
+    curve = study.model.gravity_torque(along)[:, joint]
+    curve[np.abs(curve) <= study.rounding] = 0.0
     return GravityLoad(
         worst=torque, position=tuple(position.tolist()), share=abs(torque) / limit,
         payload_left=_payload_left(torque, limit,
@@ -45,7 +48,7 @@ def gravity_load(study, joint, link, point):
         quantiles=tuple(np.quantile(magnitudes, _LEVELS).tolist()),
         edges=tuple(edges.tolist()), counts=tuple(counts.tolist()),
         curve_positions=tuple(places.tolist()),
-        curve_torques=tuple(study.model.gravity_torque(along)[:, joint].tolist()))
+        curve_torques=tuple(curve.tolist()))
 
 
 def per_kilogram(model, q, link, point):

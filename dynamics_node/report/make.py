@@ -7,18 +7,18 @@ import numpy as np
 
 from .carrying import payload_entry
 from .conditioning import conditioning_entry
+from .defaults import SAMPLES, SEED
 from .entries import body_entries, joint_entries, link_entries
 from .findings import find_all
 from .loads import gravity_load
+from .payload_link import default_payload_link
 from .report import Report
 from .study import Study
 from ..dynamics.arguments import check_link, gravity_vector
 from ..dynamics.robot_model import STANDARD_GRAVITY
-from ..errors import ArgumentError, RobotDescriptionError
+from ..errors import ArgumentError, quoted, RobotDescriptionError
 from ..urdf import examine_urdf
 
-SAMPLES = 4096
-SEED = 1
 _MOST_SAMPLES = 10_000_000
 
 
@@ -38,7 +38,7 @@ def make_report(source, *, gravity=STANDARD_GRAVITY, samples=SAMPLES, seed=SEED,
     seed : int
         Of their positions, >= 0.
     link : str, optional
-        That carries a payload; by default the last one of the longest chain.
+        That carries a payload; see `default_payload_link`.
     point : array_like, shape (3,)
         Where the payload is in the link's frame, m.
     progress : callable(fraction, what), optional
@@ -83,7 +83,7 @@ def make_report(source, *, gravity=STANDARD_GRAVITY, samples=SAMPLES, seed=SEED,
 def _what_is_written(source, examination, gravity, samples, seed):
     links = link_entries(examination)
     return Report(
-        robot=examination.description.name, source=_source_name(source),
+        robot=quoted(examination.description.name)[1:-1], source=_source_name(source),
         root=examination.description.root, gravity=tuple(gravity.tolist()), verdict='usable',
         refusals=(), total_mass=float(sum(link.mass for link in links)),
         moving_mass=float(sum(link.mass for link in links if link.carrier)), samples=samples,
@@ -93,14 +93,14 @@ def _what_is_written(source, examination, gravity, samples, seed):
 
 def _with_dynamics(report, study, link, point, tell):
     model = study.model
-    link = model.tip_link if link is None else link
+    link = default_payload_link(model.tree) if link is None else link
     check_link(model.tree.links, link)
     report = replace(report, joint_names=model.joint_names, model=model,
                      bodies=body_entries(model.tree, study.description))
     if not model.joint_names:
         return report
     index = {name: i for i, name in enumerate(model.joint_names)}
-    joints = []
+    joints: list = []
     for joint in report.joints:
         tell(0.05 + 0.5 * len(joints) / len(report.joints), f'gravity: {joint.name}')
         if joint.name in index:

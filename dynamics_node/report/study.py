@@ -13,8 +13,10 @@ from ..urdf import RobotDescription
 
 # States that are asked for at once, in numbers: what fits into a cache.
 _NUMBERS_AT_ONCE = 500_000
-# So many of the samples with the largest torque are climbed from, for each joint.
-STARTS = 12
+# So many of the samples are climbed from, up and down, for each joint.
+STARTS = 8
+# Torques below this share of the weight of all that moves, at the length of all links in a row.
+_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,7 @@ class Study:
 
     def starts(self, joint, torques=None):
         """
-        Return the samples with the largest torque of a joint, shape (B, n).
+        Return the samples at which a joint's torque is largest and smallest.
 
         Parameters
         ----------
@@ -86,11 +88,18 @@ class Study:
         torques : numpy.ndarray, shape (S, n), optional
             Of another inertia.
 
+        Returns
+        -------
+        positions : numpy.ndarray, shape (B, n)
+        sign : numpy.ndarray, shape (B,)
+            1 for the largest, -1 for the smallest.
+
         """
         own = (self.torques if torques is None else torques)[:, joint]
         order = np.argsort(own, kind='stable')
-        chosen = np.unique(np.concatenate((order[:STARTS // 2], order[-STARTS // 2:])))
-        return self.positions[chosen]
+        low, high = order[:STARTS], order[-STARTS:]
+        return (self.positions[np.concatenate((low, high))],
+                np.repeat([-1.0, 1.0], [len(low), len(high)]))
 
     @cached_property
     def worst(self):
@@ -98,7 +107,17 @@ class Study:
         return [self._worst(joint) for joint in range(len(self.model.joint_names))]
 
     def _worst(self, joint):
-        return self.climber.climb(joint, self.starts(joint))
+        position, torque = self.climber.climb(joint, *self.starts(joint))
+        return position, torque if abs(torque) > self.rounding else 0.0
+
+    @cached_property
+    def rounding(self):
+        """What is smaller than this is no torque but rounding, N m or N."""
+        tree = self.model.tree
+        lengths = np.linalg.norm(tree.placement[:, :3, 3], axis=1).sum() + np.abs(
+            tree.inertia[:, :3, 3]).sum() / max(self.model.total_mass, 1e-300)
+        weight = self.model.total_mass * float(np.linalg.norm(self.model.gravity))
+        return _ROUNDING * weight * max(lengths, 1.0)
 
     def worst_with(self, model, joint):
         """
@@ -112,8 +131,11 @@ class Study:
 
         """
         torques = model.gravity_torque(self.positions)
-        starts = np.concatenate((self.starts(joint, torques), self.worst[joint][0][None]))
-        return self.climber.with_model(model).climb(joint, starts)
+        starts, sign = self.starts(joint, torques)
+        before = self.worst[joint][0]
+        return self.climber.with_model(model).climb(
+            joint, np.concatenate((starts, before[None], before[None])),
+            np.concatenate((sign, [1.0, -1.0])))
 
     def with_inertials(self, inertials):
         """

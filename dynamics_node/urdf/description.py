@@ -36,15 +36,16 @@ class Link:
     name : str
     inertial : Inertial or None
         None where the URDF has none.
-    has_shape : bool
-        Whether the URDF gives it a <visual> or a <collision>: what has a shape has a mass. The
-        shape itself is never looked at.
+    has_shape, has_visual : bool
+        Whether the URDF gives it a <visual> or a <collision>, and whether a <visual>: what can
+        be seen has a mass. The shape itself is never looked at.
 
     """
 
     name: str
     inertial: Inertial | None = None
     has_shape: bool = False
+    has_visual: bool = False
 
 
 @dataclass(frozen=True)

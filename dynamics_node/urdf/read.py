@@ -76,8 +76,8 @@ def examine_urdf(source):
 
     """
     robot, name = _element(source)
-    shaped = {link.get('name') for link in robot.findall('link')
-              if link.find('visual') is not None or link.find('collision') is not None}
+    visual, collision = ({link.get('name') for link in robot.findall('link')
+                          if link.find(tag) is not None} for tag in ('visual', 'collision'))
     robot = _needed(robot)
     # yourdfpy asks for one, of no use to it.
     robot.set('name', 'robot')
@@ -88,7 +88,7 @@ def examine_urdf(source):
     stated = _take_soft_limits(robot)
     parsed = _parse(robot)
     moved = moved_links(robot) if is_whole else {link.name for link in parsed.links}
-    links, link_problems, link_warnings = _links(parsed.links, moved, shaped)
+    links, link_problems, link_warnings = _links(parsed.links, moved, visual | collision, visual)
     joints, joint_problems, joint_warnings = _joints(parsed.joints, stated)
     description = RobotDescription(name, root_link(robot) if is_whole else '', tuple(links),
                                    tuple(joints), tuple(link_warnings + joint_warnings))
@@ -153,7 +153,7 @@ def _parse(robot):
                              load_meshes=False).robot
 
 
-def _links(parsed, moved, shaped):
+def _links(parsed, moved, shaped, visual):
     links, problems, warnings = [], [], []
     for link in parsed:
         inertial = None
@@ -163,7 +163,7 @@ def _links(parsed, moved, shaped):
             found = inertial_findings(link.name, inertial, link.name in moved)
             problems += found[0]
             warnings += found[1]
-        links.append(Link(link.name, inertial, link.name in shaped))
+        links.append(Link(link.name, inertial, link.name in shaped, link.name in visual))
     return links, problems, warnings
 
 

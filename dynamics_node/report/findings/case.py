@@ -140,21 +140,19 @@ class Case:
 
     @cached_property
     def reach(self):
-        """Of each link, length of the longest chain through it, m: no point goes further."""
+        """Length of the longest chain, m: no joint is further from the root link."""
         above = {joint.child: joint for joint in self.description.joints}
-        lengths, longest = {}, {}
+        longest = 0.0
         for link in self.links:
-            path, name, length = [link], link, 0.0
-            while name in above and len(path) <= len(self.links):
+            name, length, seen = link, 0.0, set()
+            while name in above and name not in seen:
+                seen.add(name)
                 joint = above[name]
                 length += float(np.linalg.norm(joint.placement[:3, 3]))
                 if joint.kind == 'prismatic' and np.isfinite([joint.lower, joint.upper]).all():
                     length += max(abs(joint.lower), abs(joint.upper))
                 name = joint.parent
-                path.append(name)
-            lengths[link] = length
-            for name in path:
-                longest[name] = max(longest.get(name, 0.0), length)
+            longest = max(longest, length)
         return longest
 
     @cached_property

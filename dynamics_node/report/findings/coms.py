@@ -17,7 +17,7 @@ def find_coms(case):
     hits = []
     for entry in case.moved_with_mass:
         com = np.array(entry.com)
-        distance, reach = float(np.linalg.norm(com)), case.reach[entry.name]
+        distance, reach = float(np.linalg.norm(com)), case.reach
         around = max([case.size_without_com(entry.name), *(
             case.size_without_com(other.child) for other in case.description.joints
             if other.parent == entry.name)])
@@ -29,7 +29,8 @@ def find_coms(case):
             WARNING, 'far_com', entry.name,
             f"link '{entry.name}' has its centre of mass {number(distance)} m from its frame, in "
             f'a robot whose joints reach {number(reach)} m', f'{number(distance)} m',
-            _later(case, entry.name, right, f'if it were {said}, {number(distance * float(np.linalg.norm(right)) / distance)} m'),
+            _later(case, entry.name, right,
+                   f'if it were {said}, {number(float(np.linalg.norm(right)))} m'),
             'URDF has metres: were millimetres written, or the coordinates of the whole robot '
             'instead of those in the link frame?', distance / reach))
     return told(hits, lambda count: f'{count} links have their centre of mass outside the robot')

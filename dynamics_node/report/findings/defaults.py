@@ -10,6 +10,8 @@ from .kinds import NOTE, WARNING
 from .words import names, number
 from ..report import Finding
 
+# What changes no torque or inertia by as much is not told; what changes less is a note.
+_MATTERS, _WARNS = 0.01, 0.05
 # Links lighter than this share of what moves do not matter here.
 _LIGHT = 0.01
 # A placeholder that is wrong by less than this, for a ball as large as the link, may stand.
@@ -31,6 +33,8 @@ def find_defaults(case):
             hits.append(_placeholder(case, entry, inertial))
         if _is_balanced(case, entry, inertial):
             balanced.append(_balanced(case, entry, inertial))
+    hits = [hit for hit in hits if not hit.effect.share < _MATTERS]
+    balanced = [hit for hit in balanced if not hit.effect.share < _MATTERS]
     return [*_copies(case), *_unit_masses(case, entries),
             *told(hits, lambda count: f'{count} links have a tensor that looks typed by hand'),
             *told(balanced, lambda count: f'{count} heavy links have their centre of mass '
@@ -60,8 +64,8 @@ def _placeholder(case, entry, inertial):
         WARNING if value > 0.0 and (is_far or has_unit_mass) else NOTE, 'placeholder_tensor',
         entry.name, f"link '{entry.name}' has {said}{mass} at {number(entry.mass)} kg: it looks "
         'typed by hand', said + mass,
-        _later(inertia_effect, case, entry.name, changed(inertial, tensor=moment * np.eye(3)),
-               f'as a ball of {number(size)} m'),
+        inertia_effect(case, entry.name, changed(inertial, tensor=moment * np.eye(3)),
+                       f'as a ball of {number(size)} m'),
         'take mass, centre of mass and tensor from the CAD program, or compute them from the '
         'shape', abs(math.log(max(value, 1e-12) / moment)))
 
@@ -77,7 +81,7 @@ def _unit_masses(case, entries):
         WARNING if typed else NOTE, 'placeholder_mass', tuple(entry.name for entry in exact),
         f'{len(exact)} moving links have a mass of exactly 1 kg: '
         f'{names(entry.name for entry in exact)}',
-        torque_effect(case, inertials, 'if each of them weighed 2 kg'),
+        torque_effect(case, inertials, 'if each of them weighed 2 kg').text,
         'check that somebody has weighed them, or asked the CAD program')]
 
 
@@ -90,21 +94,21 @@ def _copies(case):
         keys.setdefault(key, []).append(entry)
     found = []
     for entries in keys.values():
-        chain = _in_one_chain(case, entries)
+        chain = _in_one_chain(case, entries) if len(entries) >= _COPIES else []
         if len(chain) < _COPIES or sum(entry.mass for entry in chain) < _LIGHT * case.moving_mass:
             continue
         lengths = {round(case.size_without_com(entry.name), 6) for entry in chain}
         if len(lengths) == 1 and not _is_placeholder(case.links[chain[0].name].inertial.tensor):
             continue  # equal parts of equal length: a chain of modules
         link = chain[0].name
+        effect = torque_effect(case, {link: changed(case.links[link].inertial,
+                                                    mass=2.0 * chain[0].mass)},
+                               f"if '{link}' weighed twice as much")
         found.append(Finding(
-            WARNING, 'identical_inertials', tuple(entry.name for entry in chain),
+            NOTE if effect.share < _WARNS else WARNING, 'identical_inertials', tuple(entry.name for entry in chain),
             f'{len(chain)} links of one chain have the same <inertial> to the last digit '
             f'({number(chain[0].mass)} kg): {names(entry.name for entry in chain)}',
-            torque_effect(case, {link: changed(case.links[link].inertial,
-                                               mass=2.0 * chain[0].mass)},
-                          f"if '{link}' weighed twice as much"),
-            'give each link its own <inertial>, unless they are equal parts indeed'))
+            effect.text, 'give each link its own <inertial>, unless they are equal parts indeed'))
     return found
 
 
@@ -138,11 +142,7 @@ def _balanced(case, entry, inertial):
         f"link '{entry.name}' of {number(entry.mass)} kg has its centre of mass exactly at its "
         f'frame, though it goes {number(2.0 * float(np.linalg.norm(half)))} m to joint '
         f"'{joint.name}'", f'{number(entry.mass)} kg',
-        _later(torque_effect, case, {entry.name: changed(inertial, com=half)},
-               f"if it were halfway to joint '{joint.name}'"),
+        torque_effect(case, {entry.name: changed(inertial, com=half)},
+                      f"if it were halfway to joint '{joint.name}'"),
         'check that <inertial><origin xyz> is not just missing', entry.mass)
-
-
-def _later(function, *arguments):
-    return lambda: function(*arguments)
 

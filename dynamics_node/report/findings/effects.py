@@ -1,13 +1,34 @@
 """What another inertia would do to the torques, computed and said in a sentence."""
 
 from dataclasses import replace
+import math
+from typing import NamedTuple
 
 import numpy as np
 
 from .words import number, percent
 
 # Below this share nothing is said to change.
-_NOTHING = 1e-3
+NOTHING = 1e-3
+
+
+class Effect(NamedTuple):
+    """
+    What a change would do.
+
+    Attributes
+    ----------
+    text : str
+    share : float
+        Of the torque or inertia that changes most, without sign; NaN if it is not known.
+
+    """
+
+    text: str
+    share: float
+
+
+UNKNOWN = Effect('', math.nan)
 
 
 def torque_effect(case, inertials, if_what):
@@ -24,19 +45,19 @@ def torque_effect(case, inertials, if_what):
 
     Returns
     -------
-    str
-        For the joint whose torque changes most.
+    Effect
+        On the joint whose torque changes most.
 
     """
     if case.study is None:
-        return ''
+        return UNKNOWN
     return _torque_sentence(case, case.study.with_inertials(inertials), inertials, if_what)
 
 
 def payload_effect(case, link, mass, if_what):
     """Say the same for a point mass at the origin of a link's frame."""
     if case.study is None:
-        return ''
+        return UNKNOWN
     model = case.study.model.with_payload(link, mass)
     return _torque_sentence(case, model, [link], if_what)
 
@@ -56,24 +77,24 @@ def inertia_effect(case, link, inertial, with_what):
 
     Returns
     -------
-    str
+    Effect
 
     """
     joints = [] if case.study is None else case.study.joints_under(link)
     if not joints:
-        return ''
+        return UNKNOWN
     before = case.sampled_inertia[:, joints]
     after = case.diagonal_of(case.study.with_inertials({link: inertial}))[:, joints]
     with np.errstate(all='ignore'):
         change = np.where(after > 0.0, before / after - 1.0, 0.0)
     place = np.unravel_index(np.abs(change).argmax(), change.shape)
     share, name = float(change[place]), case.study.model.joint_names[joints[place[1]]]
-    if abs(share) < _NOTHING:
-        return (f'next to nothing: the inertia that any joint feels changes by less than '
-                f'{percent(_NOTHING)} {with_what}, gravity torques not at all')
+    if abs(share) < NOTHING:
+        return Effect('next to nothing: the inertia that any joint feels changes by less than '
+                      f'{percent(NOTHING)} {with_what}, gravity torques not at all', abs(share))
     way = (f'up to {percent(share)} more' if share > 0.0 else f'up to {percent(-share)} less')
-    return (f"joint '{name}' seems to have {way} inertia (D_jj) than {with_what}; gravity "
-            'torques do not change')
+    return Effect(f"joint '{name}' seems to have {way} inertia (D_jj) than {with_what}; gravity "
+                  'torques do not change', abs(share))
 
 
 def changed(inertial, **values):
@@ -125,7 +146,7 @@ def _torque_sentence(case, model, links, if_what):
     study = case.study
     joints = sorted({joint for link in links for joint in study.joints_under(link)})
     if not joints:
-        return 'none: no joint moves it'
+        return Effect('none: no joint moves it', 0.0)
     best = None
     for joint in joints:
         before, after = abs(study.worst[joint][1]), abs(study.worst_with(model, joint)[1])
@@ -133,11 +154,12 @@ def _torque_sentence(case, model, links, if_what):
             best = joint, before, after
     joint, before, after = best
     name = study.model.joint_names[joint]
-    if abs(after - before) <= _NOTHING * max(before, after):
-        return (f'next to nothing: no gravity torque changes by more than {percent(_NOTHING)} '
-                f'{if_what}')
+    if abs(after - before) <= NOTHING * max(before, after):
+        return Effect('next to nothing: no gravity torque changes by more than '
+                      f'{percent(NOTHING)} {if_what}', 0.0)
     unit = unit_of(case, name)
     more = ('' if before <= 1e-9 * after else
             f' ({"+" if after > before else "-"}{percent(abs(after - before) / before)})')
-    return (f"the largest gravity torque of joint '{name}' would be {number(after)} {unit} "
-            f'instead of {number(before)} {unit}{more} {if_what}')
+    return Effect(f"the largest gravity torque of joint '{name}' would be {number(after)} {unit} "
+                  f'instead of {number(before)} {unit}{more} {if_what}',
+                  abs(after - before) / max(before, study.rounding))

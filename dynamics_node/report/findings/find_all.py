@@ -69,6 +69,6 @@ def _of_mended(report, examination):
 def _said_once(found):
     # A gripper without mass is told as a gripper, not as a shape once more.
     grippers = {name for finding in found if finding.kind == 'missing_gripper'
-                and finding.severity == 'warning' for name in finding.subjects}
+                for name in finding.subjects}
     return [finding for finding in found if not (finding.kind == 'shape_without_mass'
                                                  and set(finding.subjects) <= grippers)]

@@ -3,11 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from .effects import Effect
 from .words import listed
 from ..report import Finding
 
 # So many alike hits are told one by one; more become one finding with the weightiest.
-_APART = 2
+_APART = 1
 _SHOWN = 4
 
 
@@ -23,8 +24,8 @@ class Hit:
         The whole sentence.
     short : str
         The numbers alone, for a list.
-    effect : callable() -> str
-        Computed only if it is told.
+    effect : Effect or callable() -> Effect
+        Called only if it is told.
     advice : str
     weight : float
         The weightiest is told first.
@@ -36,9 +37,13 @@ class Hit:
     subject: str
     what: str
     short: str
-    effect: Callable[[], str]
+    effect: Effect | Callable[[], Effect]
     advice: str
     weight: float = 0.0
+
+    def effect_text(self):
+        """Return what it does, in words."""
+        return (self.effect if isinstance(self.effect, Effect) else self.effect()).text
 
 
 def told(hits, plural):
@@ -63,14 +68,20 @@ def told(hits, plural):
     for (severity, kind), group in groups.items():
         group.sort(key=lambda hit: -hit.weight)
         if len(group) <= _APART:
-            findings += [Finding(severity, kind, (hit.subject,), hit.what, hit.effect(),
+            findings += [Finding(severity, kind, (hit.subject,), hit.what, hit.effect_text(),
                                  hit.advice) for hit in group]
             continue
         shown = [f"'{hit.subject}' ({hit.short})" if hit.short else f"'{hit.subject}'"
                  for hit in group[:_SHOWN]]
-        effect = group[0].effect()
+        effect = group[0].effect_text()
         findings.append(Finding(
             severity, kind, tuple(hit.subject for hit in group),
             f'{plural(len(group))}: {listed(shown, len(group))}',
-            f"'{group[0].subject}': {effect}" if effect else '', group[0].advice))
+            f"'{group[0].subject}': {effect}" if effect else '', _advice(group)))
     return findings
+
+
+def _advice(group):
+    advice = group[0].advice
+    same = all(hit.advice == advice for hit in group)
+    return advice if same else f"'{group[0].subject}': {advice}"

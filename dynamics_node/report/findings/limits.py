@@ -2,6 +2,7 @@
 
 import math
 
+from .effects import Effect, UNKNOWN
 from .hit import Hit, told
 from .kinds import NOTE, WARNING
 from .words import names, number, percent
@@ -15,38 +16,39 @@ def find_limits(case):
     zero = [joint for joint in joints if stated[joint.name].effort <= 0.0]
     missing = [joint for joint in joints if math.isnan(joint.effort) and joint not in zero]
     still = [joint for joint in joints if math.isnan(joint.velocity)]
-    return [*_over(joints), *_empty_ranges(case, joints), *_efforts(
-        WARNING, 'zero_effort_limit', zero, 'an effort limit of 0'), *_efforts(
-        WARNING, 'no_effort_limit', missing, 'no effort limit'), *_velocities(still),
+    return [*_over(joints, case.study), *_empty_ranges(case, joints), *_efforts(
+        'zero_effort_limit', zero, 'an effort limit of 0'), *_efforts(
+        'no_effort_limit', missing, 'no effort limit'), *_velocities(still),
         *_not_looked_at(joints)]
 
 
-def _over(joints):
+def _over(joints, study):
     hits = [Hit(
         WARNING, 'over_effort_limit', joint.name,
         f"joint '{joint.name}': gravity alone takes up to {number(joint.gravity.magnitude)} "
-        f'{joint.effort_unit}, {percent(joint.gravity.share)} of its effort limit of '
+        f'{joint.effort_unit}, {100.0 * joint.gravity.share:.1f} % of its effort limit of '
         f'{number(joint.effort)} {joint.effort_unit}',
         f'{number(joint.gravity.magnitude)} of {number(joint.effort)} {joint.effort_unit}',
-        lambda: 'where it is above the limit the arm sinks whatever the motor does; the node '
-                'reports a FAULT after 2 s of it',
+        _sinks(study, joint),
         'check masses, centres of mass and <limit effort> (N m or N at the joint, behind the '
         'gear); or the arm must keep away from there', joint.gravity.share)
         for joint in joints if joint.gravity is not None and joint.gravity.share > 1.0]
     return told(hits, lambda count: f'gravity alone is above the effort limit of {count} joints')
 
 
-def _efforts(severity, kind, joints, words):
+def _efforts(kind, joints, words):
     if not joints:
         return []
     known = [joint for joint in joints if joint.gravity is not None]
     effect = ''
     if known:
         most = max(known, key=lambda joint: joint.gravity.magnitude)
-        effect = (f"gravity asks up to {number(most.gravity.magnitude)} {most.effort_unit} of "
+        effect = ('gravity asks nothing of them; ' if most.gravity.magnitude == 0.0 else
+                  f'gravity asks up to {number(most.gravity.magnitude)} {most.effort_unit} of '
                   f"'{most.name}'; ")
+    asked = any(joint.gravity is None or joint.gravity.magnitude > 0.0 for joint in joints)
     return [Finding(
-        severity, kind, tuple(joint.name for joint in joints),
+        WARNING if asked else NOTE, kind, tuple(joint.name for joint in joints),
         f'{_counted(joints)} {words}: {names(joint.name for joint in joints)}',
         f'{effect}the node refuses to be enabled, and the payload that is left is not known',
         'write what the motor can do, <limit effort="..."/>, or tell the node: parameter '
@@ -86,10 +88,17 @@ def _empty_ranges(case, joints):
 
 def _later_range(joint):
     if joint.gravity is None:
-        return lambda: ''
-    return lambda: (f'it counts as a joint without limits: its largest gravity torque, '
-                    f'{number(joint.gravity.magnitude)} {joint.effort_unit}, may be at a position '
-                    'that it never has')
+        return UNKNOWN
+    return Effect('it counts as a joint without limits: its largest gravity torque, '
+                  f'{number(joint.gravity.magnitude)} {joint.effort_unit}, may be at a position '
+                  'that it never has', math.nan)
+
+
+def _sinks(study, joint):
+    index = study.model.joint_names.index(joint.name)
+    share = float((abs(study.torques[:, index]) > joint.effort).mean())
+    return Effect(f'at {percent(share)} of the sampled positions it sinks whatever the motor '
+                  'does; held there, the node reports a FAULT after 2 s', share)
 
 
 def _not_looked_at(joints):

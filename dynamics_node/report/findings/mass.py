@@ -4,7 +4,7 @@ import math
 
 from .effects import changed, payload_effect, torque_effect
 from .hit import Hit, told
-from .kinds import PROBLEM, WARNING
+from .kinds import NOTE, PROBLEM, WARNING
 from .words import factor, kilograms, names, number
 from ..report import Finding
 
@@ -14,6 +14,8 @@ _LIGHTER = 30.0
 _LIGHT = 0.1
 # Radius of gyration, as a share of the robot's reach, that no part of it has.
 _GYRATION = 0.5
+# What changes no torque by as much is not told.
+_MATTERS = 0.01
 # If grams were written as kilograms, then the mass is between these shares of its neighbours'.
 _PLAUSIBLE = (0.05, 20.0)
 
@@ -73,15 +75,29 @@ def _shapes(case):
     massless = [entry for entry in case.moved
                 if entry.has_shape and not entry.mass > 0.0 and not entry.mass < 0.0
                 and not math.isnan(entry.mass)]
-    hits = [Hit(WARNING, 'shape_without_mass', entry.name,
+    mass = _ordinary_mass(case)
+    hits = [Hit(_severity(case, entry), 'shape_without_mass', entry.name,
                 f"link '{entry.name}' has a shape but {_no_mass(entry)}: it weighs nothing",
                 _no_mass(entry),
-                _later(payload_effect, case, entry.name, 1.0,
-                       f"if '{entry.name}' weighed 1 kg"),
-                'add an <inertial> with its real mass, or, if the mass of its neighbour has it '
-                'already, leave it and ignore this', case.body_mass[entry.carrier] == 0.0)
+                _later(payload_effect, case, entry.name, mass,
+                       f'if it weighed {kilograms(mass)}, as the median link that moves'),
+                'add an <inertial> with its real mass; if the mass of the link that it is fixed '
+                'to has it in already, all is well', case.body_mass[entry.carrier] == 0.0)
             for entry in massless]
     return told(hits, lambda count: f'{count} moving links have a shape but no mass')
+
+
+def _severity(case, entry):
+    # Seen, and either alone or at the end of a chain, where tools are: that is hardly meant.
+    # Elsewhere somebody may have added its mass to that of the link before.
+    alone = case.body_mass[entry.carrier] == 0.0
+    at_end = not case.body_children[entry.carrier]
+    return WARNING if case.links[entry.name].has_visual and (alone or at_end) else NOTE
+
+
+def _ordinary_mass(case):
+    masses = sorted(entry.mass for entry in case.moved_with_mass)
+    return masses[len(masses) // 2] if masses else 1.0
 
 
 def _no_mass(entry):
@@ -100,10 +116,12 @@ def _grams(case):
         if not _PLAUSIBLE[0] * min(neighbours) <= mass <= _PLAUSIBLE[1] * max(neighbours):
             mass = math.exp(sum(map(math.log, neighbours)) / len(neighbours))
             right = f'if it weighed as much as its neighbours, {kilograms(mass)}'
+        effect = torque_effect(
+            case, {entry.name: changed(case.links[entry.name].inertial, mass=mass)}, right)
+        if effect.share < _MATTERS:
+            continue
         hits.append(Hit(
-            WARNING, 'grams', entry.name, sentence, short,
-            _later(torque_effect, case, {entry.name: changed(case.links[entry.name].inertial,
-                                                             mass=mass)}, right),
+            WARNING, 'grams', entry.name, sentence, short, effect,
             'URDF has kilograms: were grams written as kilograms, or is a digit lost? Weigh it '
             f'or ask the CAD program, and correct <mass value="{number(entry.mass)}"/>',
             max(neighbours) / entry.mass))
@@ -123,8 +141,8 @@ def _too_light(case, entry):
         return None
     gyration = math.sqrt(max(entry.principal_moments) / entry.mass) if (
         max(entry.principal_moments) > 0.0) else 0.0
-    reach = case.reach[entry.name]
-    if gyration > _GYRATION * reach > 0.0 and entry.mass < 0.1 * max(neighbours):
+    reach = case.reach
+    if gyration > _GYRATION * reach > 0.0 and entry.mass < 0.1 * min(neighbours):
         return (f"link '{entry.name}' weighs {kilograms(entry.mass)}, but its moments of inertia "
                 f'are those of a part of {number(gyration)} m radius (sqrt(I/m)) in a robot that '
                 f'reaches {number(reach)} m; its neighbours weigh '

@@ -4,25 +4,30 @@ import math
 
 import numpy as np
 
-from .effects import changed, inertia_effect
+from .effects import changed, Effect, inertia_effect, NOTHING, UNKNOWN
 from .hit import Hit, told
 from .kinds import NOTE, PROBLEM, WARNING
-from .words import number
+from .words import number, percent
 from ...inertia import steiner
 from ...inertia.consistency import rounding_of
 from ...urdf.inertial import link_pseudo_inertia
 
 # Moments that violate the triangle inequality by less than this are rounding of a real body's.
 _ROUNDED = 1.02
+# Two principal moments are nothing beside the third.
+_FLAT = 1e6
+# A tensor that may be right is told if it changes as much of an inertia; of a warning, more.
+_MATTERS, _WARNS = 0.01, 0.05
 _NAMES = ('ixx', 'iyy', 'izz')
 _FACTORS = (10.0, 100.0, 1000.0)
 # Radius of gyration in units of how far the link goes, and as a share of the robot's reach.
-_LARGE, _OF_REACH = 3.0, 0.4
+_LARGE, _OF_REACH = 3.0, 0.2
 # Moments of links lighter than this share of what moves are nobody's concern.
 _LIGHT = 2e-3
 # A tensor is about the frame if Steiner's part explains so much of its products of inertia, and
 # they are not small themselves.
 _EXPLAINED, _SMALL_PRODUCTS = 0.1, 0.02
+_NOTHING = Effect('none: it stands on the base, where no joint feels it', 0.0)
 
 
 def find_tensors(case):
@@ -43,6 +48,8 @@ def find_tensors(case):
                 large.append(_too_large(case, entry, principal, inertial))
             elif _is_about_frame(inertial):
                 shifted.append(_about_frame(case, entry, inertial))
+    large = [hit for hit in large if not hit.effect.share < _MATTERS]
+    shifted = [hit for hit in shifted if not hit.effect.share < _MATTERS]
     return [
         *told(impossible, lambda count: f'{count} links have a tensor that is not positive '
               'definite'),
@@ -56,14 +63,11 @@ def find_tensors(case):
 
 def _impossible(case, entry, principal, inertial):
     mended = changed(inertial, tensor=_positive(inertial.tensor))
-    severity, effect = PROBLEM, _later(inertia_effect, case, entry.name, inertial,
-                                       'with every sign made positive')
+    severity, effect = PROBLEM, UNKNOWN
     if case.study is not None:
-        # The other way round: the study has the mended tensor, for it must compute.
         effect = _later(_mended_effect, case, entry.name, mended)
     if entry.carrier is None and case.examination.is_whole:
-        severity = NOTE
-        effect = _later(_nothing)
+        severity, effect = NOTE, _NOTHING
     return Hit(
         severity, 'impossible_inertia', entry.name,
         f"link '{entry.name}': no real body has its inertia: the smallest principal moment is "
@@ -76,10 +80,11 @@ def _impossible(case, entry, principal, inertial):
 def _triangle(case, entry, principal, inertial):
     excess = float(principal[2] / max(principal[0] + principal[1], 1e-300))
     severity = PROBLEM if excess > _ROUNDED else NOTE
+    short = f'{number(excess)} times' if excess < _FLAT else 'two moments of 0'
     what = (f"link '{entry.name}': no real body has its inertia: the largest principal moment, "
             f'{number(principal[2])} kg m^2, is {number(excess)} times the sum of the two others, '
             f'{number(principal[0])} + {number(principal[1])}')
-    if excess > 1e6:
+    if excess > _FLAT:
         what = (f"link '{entry.name}': no real body has its inertia: one principal moment is "
                 f'{number(principal[2])} kg m^2, the two others are {number(principal[0])} and '
                 f'{number(principal[1])}')
@@ -88,12 +93,14 @@ def _triangle(case, entry, principal, inertial):
         mended, with_what = _cut(inertial), 'with the largest moment cut to that sum'
     else:
         mended, with_what, advice = _proposal(inertial)
-    if entry.carrier is None:
-        severity, effect = NOTE, _later(_nothing)
+    if entry.carrier is None and case.examination.is_whole:
+        severity, effect = NOTE, _NOTHING
     else:
-        effect = _later(inertia_effect, case, entry.name, mended, with_what)
-    return Hit(severity, 'triangle_inequality', entry.name, what, f'{number(excess)} times', effect,
-               advice, excess)
+        effect = inertia_effect(case, entry.name, mended, with_what)
+        if effect.share < NOTHING:
+            severity = NOTE
+    return Hit(severity, 'triangle_inequality', entry.name, what, short, effect, advice,
+               min(excess, _FLAT))
 
 
 def _proposal(inertial):
@@ -153,20 +160,21 @@ def mended_inertial(inertial):
 def _mended_effect(case, link, mended):
     joints = case.study.joints_under(link)
     if not joints:
-        return _nothing()
+        return UNKNOWN
     model = case.study.with_inertials({link: changed(mended, tensor=np.zeros((3, 3)))})
     share = 1.0 - case.diagonal_of(model)[:, joints] / case.sampled_inertia[:, joints]
     place = np.unravel_index(np.nanargmax(share), share.shape)
     name = case.study.model.joint_names[joints[place[1]]]
-    return (f"the tensor is up to {number(100.0 * float(share[place]))} % of the inertia (D_jj) that joint "
-            f"'{name}' feels, if its signs are made positive; as it stands RobotModel and the "
-            'node refuse the robot')
+    return Effect(
+        f'the tensor is up to {percent(float(share[place]))} of the inertia (D_jj) that joint '
+        f"'{name}' feels, if its signs are made positive; as it stands RobotModel and the node "
+        'refuse the robot', float(share[place]))
 
 
 def _is_too_large(case, entry, principal):
     gyration = math.sqrt(principal[2] / entry.mass)
     return (gyration > _LARGE * case.size(entry.name) and gyration
-            > _OF_REACH * case.reach[entry.name] > 0.0)
+            > _OF_REACH * case.reach > 0.0)
 
 
 def _too_large(case, entry, principal, inertial):
@@ -179,8 +187,7 @@ def _too_large(case, entry, principal, inertial):
         f'its mass were {number(gyration)} m from its centre; as far as joints and centre of mass '
         f'tell it goes {number(case.size(entry.name))} m',
         f'{number(gyration)} m of {number(case.size(entry.name))} m',
-        _later(inertia_effect, case, entry.name, ball,
-               f'as a ball of {number(size)} m radius'),
+        inertia_effect(case, entry.name, ball, f'as a ball of {number(size)} m radius'),
         'URDF has kg m^2: g mm^2 are 1e-9 and kg mm^2 are 1e-6 of it, lb in^2 2.93e-4; look for '
         'a missing decimal point too', gyration / size)
 
@@ -204,14 +211,15 @@ def _about_frame(case, entry, inertial):
     rotation = inertial.placement[:3, :3]
     without = _in_link(inertial) - steiner(np.zeros((3, 3)), inertial.mass, com)
     before, after = _products(_in_link(inertial)), _products(without)
+    effect = inertia_effect(case, entry.name,
+                            changed(inertial, tensor=rotation.T @ without @ rotation),
+                            'with the tensor moved to the centre of mass')
     return Hit(
-        WARNING, 'tensor_not_about_com', entry.name,
+        NOTE if effect.share < _WARNS else WARNING, 'tensor_not_about_com', entry.name,
         f"link '{entry.name}': its tensor seems to be about the link frame: moved to the centre "
         f'of mass (Steiner), its products of inertia go from {number(before)} to '
         f'{number(after)} kg m^2', f'{number(before)} to {number(after)} kg m^2',
-        _later(inertia_effect, case, entry.name,
-               changed(inertial, tensor=rotation.T @ without @ rotation),
-               'with the tensor moved to the centre of mass'),
+        effect,
         'URDF wants the tensor about the centre of mass, in the axes of <origin rpy>: take that '
         'one from the CAD program', before)
 
@@ -223,10 +231,6 @@ def _in_link(inertial):
 
 def _products(tensor):
     return float(np.linalg.norm([tensor[0, 1], tensor[0, 2], tensor[1, 2]]))
-
-
-def _nothing():
-    return 'none: it stands on the base, where no joint feels it'
 
 
 def _later(function, *arguments):

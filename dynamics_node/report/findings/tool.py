@@ -32,11 +32,11 @@ def find_missing_tools(case):
         tools = [entry for entry in frames if _TOOL.search(entry.name)]
         if any(entry.mass > 0.0 and _TOOL.search(entry.name) for entry in entries):
             continue  # something that is called a tool weighs something
-        shaped = [entry for entry in tools if entry.has_shape]
+        shaped = [entry for entry in tools if case.links[entry.name].has_visual]
         is_one_arm = len(_leaves(case)) == 1
         if not tools and not (is_one_arm and joint.kind != 'prismatic'):
             continue
-        found.append(_finding(case, joint, (shaped or tools or entries)[-1], shaped))
+        found.append(_finding(case, joint, (shaped or tools or entries)[-1], tools, shaped))
     return found
 
 
@@ -59,19 +59,20 @@ def _last_joints(case):
     return last
 
 
-def _finding(case, joint, entry, shaped):
+def _finding(case, joint, entry, tools, shaped):
     most, torque = added_torque(case, entry.name, _KILOGRAM)
     index = case.study.model.joint_names.index(most)
     limit = float(case.study.model.effort_limits[index])
     share = '' if np.isnan(limit) else f', {number(100.0 * torque / limit)} % of its limit'
     if shaped:
-        what = (f"behind joint '{joint.name}' {names([e.name for e in shaped])} can be seen but "
-                'weighs nothing: the gripper is missing')
+        what = (f"behind the last joint '{joint.name}' {names([e.name for e in shaped])} can be "
+                'seen without any mass: the gripper is missing')
     else:
-        what = (f"behind its last joint '{joint.name}' this arm has no tool that weighs "
-                'something')
+        what = (f"behind the last joint '{joint.name}' there is no tool that weighs something: "
+                f'the arm ends in {names([e.name for e in tools] or [entry.name])}')
+    subjects = (entry.name, *(other.name for other in tools if other is not entry))
     return Finding(
-        WARNING if shaped else NOTE, 'missing_gripper', (entry.name,), what,
+        WARNING if shaped else NOTE, 'missing_gripper', subjects, what,
         f"a gripper of 1 kg at '{entry.name}' adds up to {number(torque)} "
         f"{unit_of(case, most)} to joint '{most}'{share}; until it is known, that is missing in "
         'the gravity torque',
