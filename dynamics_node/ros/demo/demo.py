@@ -59,6 +59,8 @@ def _options(arguments: list[str]) -> argparse.Namespace:
     """Return the command line's options."""
     parser = argparse.ArgumentParser(description=(__doc__ or '').strip().splitlines()[0])
     parser.add_argument('--robot', type=Path, help='a URDF file (default: arm7.urdf)')
+    parser.add_argument('--params-file', type=Path, metavar='FILE',
+                        help="parameters of the node; its joints must be the URDF's, in its order")
     parser.add_argument('--view', action='store_true', help='watch in the MuJoCo viewer')
     parser.add_argument('--hold', type=float, default=10.0, metavar='SECONDS',
                         help='how long the node holds the arm before the push (default: 10)')
@@ -74,15 +76,16 @@ def isolate() -> None:
 
 def _run(options: argparse.Namespace, console: Console) -> int:
     """Run the story between two processes, print and draw what came out."""
-    outcome, arm, name = perform(options.robot or arm7_path(), options.hold, options.view, console)
+    outcome, arm, name = perform(options.robot or arm7_path(), options.hold, options.view, console,
+                                 options.params_file)
     print_outcome(console, outcome)
     draw(outcome, arm, name, options.output)
     console.print(f'figure: {options.output}', markup=False)
     return _verdict(outcome, console)
 
 
-def perform(path: Path, hold: float, view: bool,
-            console: Console) -> tuple[Outcome, MujocoArm, str]:
+def perform(path: Path, hold: float, view: bool, console: Console,
+            params_file: Path | None = None) -> tuple[Outcome, MujocoArm, str]:
     """
     Tell the story to the robot of a URDF file.
 
@@ -96,6 +99,8 @@ def perform(path: Path, hold: float, view: bool,
         Whether MuJoCo's viewer shows it.
     console : Console
         Where to print what happens.
+    params_file : Path, optional
+        Parameters of the node.
 
     Returns
     -------
@@ -120,7 +125,7 @@ def perform(path: Path, hold: float, view: bool,
                   f'by MuJoCo, held by dynamics_node (domain {os.environ["ROS_DOMAIN_ID"]})')
     with Processes() as processes:
         try:
-            _start(processes, path, arm, view, console)
+            _start(processes, path, arm, view, console, params_file)
             return _tell(processes, arm, hold, console), arm, name
         except DemoError:
             print_logs(console, processes.tails())
@@ -128,14 +133,16 @@ def perform(path: Path, hold: float, view: bool,
 
 
 def _start(processes: Processes, path: Path, arm: MujocoArm, view: bool,
-           console: Console) -> None:
+           console: Console, params_file: Path | None) -> None:
     """Start the simulated robot and the node."""
     processes.start('simulated_robot', 'dynamics_node.ros.demo.simulated_robot',
                     *(['--view'] if view else []),
                     '--ros-args', '-p', f'robot_description_file:={path.resolve()}')
     parameters = ['--ros-args', '-p', f'state_timeout:={STATE_TIMEOUT}']
     missing = joints_without_limit(arm)
-    if missing:
+    if params_file is not None:
+        parameters += ['--params-file', str(params_file.resolve(strict=True))]
+    elif missing:
         limits = ', '.join(f'{limit:.1f}' for limit in filled_in_limits(arm))
         parameters += ['-p', f'effort_limits:=[{limits}]']
         console.print(f'The URDF states no effort limit for {", ".join(missing)}, and the node '
