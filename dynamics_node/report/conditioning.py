@@ -38,7 +38,7 @@ def conditioning_entry(study):
     slides = {int(model.tree.coordinate[body]) for body in np.flatnonzero(
         (model.tree.kind == PRISMATIC) & model.tree.is_independent)}
     return ConditioningEntry(
-        median=float(np.median(numbers)), worst=float(numbers.max()),
+        median=float(np.median(numbers)), worst=float(np.max(numbers)),
         position=tuple(worst.tolist()),
         weakest_joint=model.joint_names[int(np.argmax(np.abs(vector)))],
         is_positive_definite=is_definite, has_mixed_units=0 < len(slides) < n, samples=count)

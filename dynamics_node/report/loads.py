@@ -35,7 +35,7 @@ def gravity_load(study, joint, link, point):
     magnitudes = np.abs(study.torques[:, joint])
     magnitudes[magnitudes <= study.rounding] = 0.0
     counts, edges = np.histogram(magnitudes, _BINS, range=(0.0, abs(torque) or 1.0))
-    places = np.linspace(*study.ranges[joint], _CURVE)
+    places = np.linspace(study.ranges[joint, 0], study.ranges[joint, 1], _CURVE)
     along = np.repeat(position[None], len(places), axis=0)
     along[:, joint] = places
     curve = study.model.gravity_torque(along)[:, joint]

@@ -54,7 +54,7 @@ def _last_body(tree):
         if len(children) == 0:
             return body
         heaviest = int(children[np.argmax(behind[children])])
-        if body >= 0 and (len(children) > 1 and behind[heaviest] < _LIGHT * total
+        if body >= 0 and ((len(children) > 1 and behind[heaviest] < _LIGHT * total)
                           or _is_finger(tree, heaviest, behind, total)):
             return body
         body = heaviest

@@ -82,7 +82,8 @@ def examine_urdf(source):
     # yourdfpy asks for one, of no use to it.
     robot.set('name', 'robot')
     problems = structure_problems(robot) + number_problems(robot)
-    unread, is_whole = frozenset(), not problems
+    unread: frozenset = frozenset()
+    is_whole = not problems
     if problems:
         robot, unread = sound_parts(robot)
     stated = _take_soft_limits(robot)

@@ -34,6 +34,12 @@ class Case:
     study: Study | None
 
     @property
+    def known(self) -> Study:
+        """The study, where there is one."""
+        assert self.study is not None
+        return self.study
+
+    @property
     def description(self):
         """The robot description."""
         return self.examination.description
@@ -70,7 +76,7 @@ class Case:
 
     @cached_property
     def any_shapes(self):
-        """Whether the URDF gives shapes at all: a robot without any is not to be judged by them."""
+        """Whether the URDF gives shapes at all; where it does not, they tell nothing."""
         return any(link.has_shape for link in self.description.links)
 
     @cached_property
@@ -158,9 +164,9 @@ class Case:
     @cached_property
     def sampled_inertia(self):
         """Diagonal of D at some samples, shape (S, n)."""
-        return self.diagonal_of(self.study.model)
+        return self.diagonal_of(self.known.model)
 
     def diagonal_of(self, model):
         """Return the diagonal of a model's D at some samples, shape (S, n)."""
-        matrices = model.mass_matrix(self.study.positions[:_SAMPLES])
+        matrices = model.mass_matrix(self.known.positions[:_SAMPLES])
         return np.diagonal(matrices, axis1=1, axis2=2)

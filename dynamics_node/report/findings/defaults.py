@@ -105,7 +105,8 @@ def _copies(case):
                                                     mass=2.0 * chain[0].mass)},
                                f"if '{link}' weighed twice as much")
         found.append(Finding(
-            NOTE if effect.share < _WARNS else WARNING, 'identical_inertials', tuple(entry.name for entry in chain),
+            NOTE if effect.share < _WARNS else WARNING, 'identical_inertials',
+            tuple(entry.name for entry in chain),
             f'{len(chain)} links of one chain have the same <inertial> to the last digit '
             f'({number(chain[0].mass)} kg): {names(entry.name for entry in chain)}',
             effect.text, 'give each link its own <inertial>, unless they are equal parts indeed'))

@@ -87,7 +87,7 @@ def inertia_effect(case, link, inertial, with_what):
     after = case.diagonal_of(case.study.with_inertials({link: inertial}))[:, joints]
     with np.errstate(all='ignore'):
         change = np.where(after > 0.0, before / after - 1.0, 0.0)
-    place = np.unravel_index(np.abs(change).argmax(), change.shape)
+    place = np.unravel_index(int(np.argmax(np.abs(change))), change.shape)
     share, name = float(change[place]), case.study.model.joint_names[joints[place[1]]]
     if abs(share) < NOTHING:
         return Effect('next to nothing: the inertia that any joint feels changes by less than '
@@ -129,7 +129,8 @@ def added_torque(case, link, mass):
     study = case.study
     bare = study.with_inertials({entry.name: None for entry in case.moved})
     loaded = bare.with_payload(link, mass)
-    torques = {joint: abs(study.worst_with(loaded, joint)[1]) for joint in study.joints_under(link)}
+    torques = {joint: abs(study.worst_with(loaded, joint)[1])
+               for joint in study.joints_under(link)}
     turning = {joint: torque for joint, torque in torques.items()
                if unit_of(case, study.model.joint_names[joint]) == 'N m'}
     chosen = turning or torques
@@ -147,12 +148,9 @@ def _torque_sentence(case, model, links, if_what):
     joints = sorted({joint for link in links for joint in study.joints_under(link)})
     if not joints:
         return Effect('none: no joint moves it', 0.0)
-    best = None
-    for joint in joints:
-        before, after = abs(study.worst[joint][1]), abs(study.worst_with(model, joint)[1])
-        if best is None or abs(after - before) > abs(best[2] - best[1]):
-            best = joint, before, after
-    joint, before, after = best
+    pairs = [(joint, abs(study.worst[joint][1]), abs(study.worst_with(model, joint)[1]))
+             for joint in joints]
+    joint, before, after = max(pairs, key=lambda pair: abs(pair[2] - pair[1]))
     name = study.model.joint_names[joint]
     if abs(after - before) <= NOTHING * max(before, after):
         return Effect('next to nothing: no gravity torque changes by more than '

@@ -42,7 +42,8 @@ def find_joints(case):
 
 
 def _axes(case):
-    missing = [joint for joint in case.report.joints if not case.joints[joint.name].stated.has_axis]
+    missing = [joint for joint in case.report.joints
+               if not case.joints[joint.name].stated.has_axis]
     if not missing:
         return []
     return [Finding(

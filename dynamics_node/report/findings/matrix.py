@@ -27,7 +27,8 @@ def find_matrix(case, is_explained):
             PROBLEM, 'singular_mass_matrix', (found.weakest_joint,),
             f'the mass matrix is not positive definite at some of {found.samples} positions, '
             f"joint '{found.weakest_joint}' has the largest part in it",
-            'the node refuses to be enabled at such a position, and forward_dynamics has no answer',
+            'the node refuses to be enabled at such a position, and forward_dynamics has no '
+            'answer',
             'give the links that this joint moves a mass and a tensor; where three axes meet in '
             'one point without mass between them, two of them can fall together')]
     if found.worst > _ILL:

@@ -114,7 +114,7 @@ def _proposal(inertial):
                 trial = tensor.copy()
                 trial[i, i] = tensor[i, i] * factor ** -way
                 moments = np.linalg.eigvalsh(trial)
-                if 0.0 < moments[0] and moments[2] <= moments[0] + moments[1]:
+                if moments[0] > 0.0 and moments[2] <= moments[0] + moments[1]:
                     name, size = _NAMES[i], 'large' if way > 0.0 else 'small'
                     entry = f'{name}="{trial[i, i]:.6g}"'
                     return (changed(inertial, tensor=trial), f'with {entry}',
@@ -199,7 +199,7 @@ def _is_about_frame(inertial):
     tensor = _in_link(inertial)
     without = tensor - steiner(np.zeros((3, 3)), inertial.mass, com)
     moments = np.linalg.eigvalsh(without)
-    if not 0.0 < moments[0] or moments[2] > moments[0] + moments[1]:
+    if not moments[0] > 0.0 or moments[2] > moments[0] + moments[1]:
         return False
     products = _products(tensor)
     return bool(products > _SMALL_PRODUCTS * np.trace(tensor)
