@@ -23,7 +23,7 @@ def end_of(source):
     ('kinova_description/robots/kinova.urdf', 'j2s6s200_end_effector'),
     ('tiago_description/robots/tiago_no_hand.urdf', 'wrist_ft_tool_link'),
     ('g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf', 'left_hand_palm_link'),
-    ('talos_data/robots/talos_left_arm.urdf', 'gripper_left_base_link')])
+    ('talos_data/robots/talos_left_arm.urdf', 'gripper_left_inner_single_link')])
 def test_public_arms_carry_with_their_tool_and_no_finger(robot, link):
     assert end_of(public_robot(robot)) == link
 
