@@ -22,7 +22,8 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
         (f'share/{package_name}/launch', files('launch', '*.launch.py')),
-        (f'share/{package_name}/config', files('config', '*.yaml') + files('config', '*.xml')),
+        (f'share/{package_name}/config', files('config', '*.yaml') + files('config', '*.xml')
+         + files('config', '*.rviz')),
         (f'share/{package_name}/config/robots', files('config/robots', '*.urdf')),
     ],
     install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'scipy', 'yourdfpy'],

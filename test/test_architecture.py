@@ -17,8 +17,9 @@ STREET = {
     'kernels': {'errors', 'model'},
     'dynamics': {'errors', 'inertia', 'urdf', 'model', 'kernels'},
     'report': {'errors', 'inertia', 'urdf', 'model', 'dynamics'},
+    'drawing': {'errors', 'inertia', 'model', 'dynamics'},
     'output': {'errors'},
-    'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'output'},
+    'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'drawing', 'output'},
 }
 # llvmlite is numba's compiler and comes with it.
 LIBRARY = {'numpy', 'numba', 'llvmlite', 'yourdfpy', 'scipy'}

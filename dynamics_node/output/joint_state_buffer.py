@@ -296,6 +296,11 @@ class JointStateBuffer:
         return max((self._stamp[i] for i in self._needed), default=0)
 
     @property
+    def newest_names(self):
+        """Names in the newest message whose names could be used, whatever came of the rest."""
+        return tuple(self._known_names or ())
+
+    @property
     def is_complete(self):
         """Whether every needed joint has been measured, however long ago."""
         return self._oldest > -math.inf

@@ -22,11 +22,23 @@ def parse(arguments):
         executor : str, a key of EXECUTORS. raw_states : bool.
 
     """
-    parser = argparse.ArgumentParser(description='Robot dynamics as a ROS 2 node.')
-    parser.add_argument('--executor', choices=sorted(EXECUTORS), default='lean',
+    return parser().parse_known_args(remove_ros_args(arguments)[1:])[0]
+
+
+def parser():
+    """
+    Return what reads the options, for the process and for docs/reference.md.
+
+    Returns
+    -------
+    argparse.ArgumentParser
+
+    """
+    options = argparse.ArgumentParser(description='Robot dynamics as a ROS 2 node.')
+    options.add_argument('--executor', choices=sorted(EXECUTORS), default='lean',
                         help="rclpy: rclpy's SingleThreadedExecutor; lean: the same for less "
                         'processor time, resting on the inside of rclpy 7.1')
-    parser.add_argument('--raw-states', action=argparse.BooleanOptionalAction, default=True,
+    options.add_argument('--raw-states', action=argparse.BooleanOptionalAction, default=True,
                         help='read joint_states from the bytes on the wire: less time from '
                         'state to command')
-    return parser.parse_known_args(remove_ros_args(arguments)[1:])[0]
+    return options

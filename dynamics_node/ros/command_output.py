@@ -10,6 +10,7 @@ from rclpy.duration import Duration
 from std_msgs.msg import Float64MultiArray
 
 from .guard import guarded
+from .hints import unheard
 from .messages import to_field
 from .qos import COMMAND, NO_EVENTS, OUTPUT_STATE
 from .throttle import Throttle
@@ -137,8 +138,7 @@ class CommandOutput:
         notes = list(notes)
         self.channel.enable(time.monotonic())
         if self._publisher.get_subscription_count() == 0:
-            notes.append('nobody listens there: is the effort controller active and the '
-                         'parameter command_topic right?')
+            notes.append(unheard(self._node, self._publisher))
         if notes:
             self.logger.warning('; '.join(notes))
         return f'enabled: efforts go to {self.topic}' + ''.join(f', but {n}' for n in notes)

@@ -1,4 +1,4 @@
-"""Between numpy and messages: the fast ways in and out."""
+"""Messages: the fast ways between them and numpy, and their names."""
 
 from array import array
 
@@ -36,3 +36,8 @@ def from_field(field):
 
     """
     return np.array(field, dtype=float)
+
+
+def type_name(kind):
+    """Return the name of a message type as ROS writes it, 'sensor_msgs/msg/JointState'."""
+    return f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'

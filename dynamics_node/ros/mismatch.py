@@ -2,6 +2,8 @@
 
 from rclpy.qos import qos_check_compatible, QoSCompatibility
 
+from .messages import type_name
+
 
 def mismatches(node, subscription):
     """
@@ -22,7 +24,7 @@ def mismatches(node, subscription):
         not fit; empty if there is none.
 
     """
-    own = f'{subscription.msg_type.__module__.split(".")[0]}/msg/{subscription.msg_type.__name__}'
+    own = type_name(subscription.msg_type)
     # What is really in force: it may have been overridden by parameters.
     wanted = [info.qos_profile for info in
               node.get_subscriptions_info_by_topic(subscription.topic_name)

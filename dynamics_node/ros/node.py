@@ -1,7 +1,6 @@
 """`DynamicsNode`: joint states in, gravity torque and commands out."""
 
 import math
-import time
 
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
@@ -14,7 +13,8 @@ from .diagnostics import Diagnostics
 from .enabling import Enabling
 from .external_torque import ExternalTorque
 from .guard import logged
-from .mismatch import mismatches
+from .hints import Hints
+from .markers import Markers
 from .model_settings import PER_JOINT
 from .parameter_table import ParameterError
 from .parameters import Parameters
@@ -30,8 +30,6 @@ from ..dynamics import RobotModel
 from ..errors import DynamicsError
 from ..output import StampTolerance
 
-# Seconds without a description or without joint states after which the log says what to do.
-PATIENCE = 5.0
 # How often the node looks for other sources of efforts and states while output is on, s.
 RIVALS_EVERY = 0.2
 
@@ -63,12 +61,13 @@ class DynamicsNode(Node):
         self._robot = None
         self._has_states = False
         self._not_finite = Throttle(1.0)
-        self._start = time.monotonic()
         self.parameters = Parameters(self)
         self._results = Results(self, self.parameters)
         self._external_torque = ExternalTorque(self, self.parameters)
         self.output = CommandOutput(self, self.parameters, self._get_robot,
                                     self._output_changed)
+        self._markers = Markers(self, self.parameters, self.output.channel,
+                                self._ask_for_efforts)
         self.states = StateInput(self, self.parameters, self._get_robot, self.output.channel,
                                  self, raw_states)
         self._rivals = Rivals(self, self.output.topic, self.states,
@@ -88,6 +87,7 @@ class DynamicsNode(Node):
         self._look_for_rivals.cancel()
         self._wants_enable = self.parameters['enable_on_start']
         self.source = DescriptionSource(self, self.parameters, self._described)
+        self._hints = Hints(self, self._get_robot, self.source, self.states)
         self.parameters.watch(self._reconfigured, self._check_against_robot)
         self.create_timer(1.0, self._every_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -123,6 +123,7 @@ class DynamicsNode(Node):
         is_first = self._robot is None
         self._robot = robot
         self._configure(self.parameters.values)
+        self._markers.prepare(robot)
         self._announce(robot, origin)
         if is_first:
             self.output.announce()
@@ -164,7 +165,11 @@ class DynamicsNode(Node):
         if self._robot is not None:
             self._robot.buffer.tolerance = StampTolerance(values['state_timeout'])
         self.output.configure()
-        self.states.with_effort = self._external_torque.configure()
+        self._external_torque.configure()
+        self._ask_for_efforts()
+
+    def _ask_for_efforts(self):
+        self.states.with_effort = self._external_torque.is_on or self._markers.is_on
 
     def on_state(self, robot, now, stamp):
         """Compute what follows from a state that is fit for use, and publish it."""
@@ -184,13 +189,14 @@ class DynamicsNode(Node):
         self._results.publish(robot, stamp, effort)
         if self._external_torque.is_on:
             self._external_torque.on_state(robot, stamp, effort)
+        self._markers.on_state(robot, stamp, effort)
 
     @logged
     def _every_second(self):
         # Somebody's own request, also one to disable, counts more than the parameter.
         if self._wants_enable and not self._enabling.was_asked:
             self._enabling.enable(self._enabled_on_start)
-        self._give_hints()
+        self._hints.give()
         self.states.count_publishers()
         self._diagnostics.measure()
         self._diagnostics.publish()
@@ -205,26 +211,6 @@ class DynamicsNode(Node):
         reasons = self._rivals.found() if self.output.channel.machine.is_driving else []
         if reasons:
             self.output.fault('; '.join(reasons))
-
-    def _give_hints(self):
-        if time.monotonic() - self._start < PATIENCE:
-            return
-        if self._robot is None:
-            self.logger.warning(
-                f'no robot description on {self.source.topic} yet: start robot_state_publisher, '
-                'or run with --ros-args -p robot_description_file:=robot.urdf'
-                + self._unheard(self.source.subscription), throttle_duration_sec=10.0)
-            return
-        missing = self._robot.buffer.stale_joints(time.monotonic(), PATIENCE)
-        if missing:
-            self.logger.warning(
-                f'no joint state on {self.states.topic} for {", ".join(missing)}: does the '
-                'joint_state_broadcaster run, and are these the names of its joints? '
-                '(parameter joints chooses others)' + self._unheard(self.states.subscription),
-                throttle_duration_sec=10.0)
-
-    def _unheard(self, subscription):
-        return ''.join(f'; {text}' for text in mismatches(self, subscription))
 
     def _output_changed(self):
         if self.output.channel.machine.is_driving:

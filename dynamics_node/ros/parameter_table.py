@@ -1,8 +1,8 @@
 """
 Every parameter of the node, in one table.
 
-Declaration, validation, config/dynamics.yaml and the README's table follow from it; tests hold
-them together. A parameter that is not in here does not exist.
+Declaration, validation, config/dynamics.yaml and docs/reference.md follow from it; tests hold them
+together. A parameter that is not in here does not exist.
 
 """
 
@@ -178,14 +178,16 @@ PARAMETERS = (
     Parameter('compensate.gravity', FLAG, True, 'Whether the gravity torque G is part of the '
               'command'),
     Parameter('compensate.coriolis', FLAG, False, 'Whether C qd is part of the command'),
-    Parameter('compensate.friction', FLAG, False, 'Whether friction is part of the command'),
+    Parameter('compensate.friction', FLAG, False, 'Whether friction is part of the command. '
+              'Begin with less than the arm has: it is positive feedback'),
     Parameter('friction.viscous', DOUBLES, (), 'Viscous friction per joint, N m s/rad or N s/m, '
               'in the order of joints. Empty: <dynamics damping> of the URDF', low=0.0, high=1e6),
     Parameter('friction.coulomb', DOUBLES, (), 'Dry friction per joint, N m or N. Empty: '
               '<dynamics friction> of the URDF', low=0.0, high=1e6),
     Parameter('friction.smoothing_velocity', DOUBLES, (), 'Speed at which dry friction has 76 % '
               'of its size, rad/s or m/s: one number, or one per joint. Empty: '
-              f'{SMOOTHING_VELOCITY:g}', low=0.0, low_open=True, takes_one=True),
+              f'{SMOOTHING_VELOCITY:g}. Friction is viscous qd + coulomb tanh(qd / smoothing)',
+              low=0.0, low_open=True, takes_one=True),
     Parameter('rotor_inertia', DOUBLES, (), 'Inertia of the rotors as the joints feel it, with '
               'the square of the gear ratio, kg m² or kg, per joint. Empty: 0', low=0.0, high=1e6),
     Parameter('payload.link', TEXT, '', 'Link that carries the payload'),

@@ -45,4 +45,6 @@ def _read(path):
         return path.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, 'strerror', None) or error
-        raise RobotDescriptionError([f"cannot read '{path}': {reason}"]) from error
+        # A launch file's folder is seldom the one that its user thinks of.
+        where = '' if path.is_absolute() else f' (looked in {Path.cwd()}; give an absolute path)'
+        raise RobotDescriptionError([f"cannot read '{path}': {reason}{where}"]) from error

@@ -78,9 +78,9 @@ def test_the_parameter_file_has_every_parameter_with_its_default():
     assert written == {}
 
 
-def test_the_readme_has_every_parameter_with_its_default():
-    text = (ROOT / 'README.md').read_text()
-    rows = dict(re.findall(r'^\| `([a-z_.]+)` \| (.*?) \|', text, re.M))
+def test_the_reference_has_every_parameter_with_its_default():
+    text = (ROOT / 'docs' / 'reference.md').read_text()
+    rows = dict(re.findall(r'^\| `([a-z_.]+)` \| [a-z\[\]]+ \| (.*?) \|', text, re.M))
     for parameter in PARAMETERS:
         default = parameter.default
         if isinstance(default, bool):

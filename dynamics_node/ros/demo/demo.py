@@ -40,7 +40,7 @@ def main(args: list[str] | None = None) -> int:
     """Run the demo and return its exit code."""
     options = _options(remove_ros_args(sys.argv if args is None else args)[1:])
     console = Console(highlight=False, width=None if sys.stdout.isatty() else 100)
-    _isolate()
+    isolate()
     # Also when it is terminated or its terminal closes, the demo must end its processes; and a
     # shell that starts it in the background lets it, and so them, ignore SIGINT.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -59,6 +59,8 @@ def _options(arguments: list[str]) -> argparse.Namespace:
     """Return the command line's options."""
     parser = argparse.ArgumentParser(description=(__doc__ or '').strip().splitlines()[0])
     parser.add_argument('--robot', type=Path, help='a URDF file (default: arm7.urdf)')
+    parser.add_argument('--params-file', type=Path, metavar='FILE',
+                        help="parameters of the node; its joints must be the URDF's, in its order")
     parser.add_argument('--view', action='store_true', help='watch in the MuJoCo viewer')
     parser.add_argument('--hold', type=float, default=10.0, metavar='SECONDS',
                         help='how long the node holds the arm before the push (default: 10)')
@@ -66,7 +68,7 @@ def _options(arguments: list[str]) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
-def _isolate() -> None:
+def isolate() -> None:
     """Keep the demo away from real robots, unless the user has chosen a domain."""
     os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
@@ -74,34 +76,73 @@ def _isolate() -> None:
 
 def _run(options: argparse.Namespace, console: Console) -> int:
     """Run the story between two processes, print and draw what came out."""
-    path = options.robot or arm7_path()
-    text = read_robot(path)
-    arm = MujocoArm(text)
-    console.print(f'[bold]{robot_name(text)}[/bold], driven joints: {len(arm.driven)}, simulated '
-                  f'by MuJoCo, held by dynamics_node (domain {os.environ["ROS_DOMAIN_ID"]})')
-    with Processes() as processes:
-        try:
-            _start(processes, path, arm, options.view, console)
-            outcome = _tell(processes, arm, options.hold, console)
-        except (DemoError, KeyboardInterrupt) as error:
-            if isinstance(error, DemoError):
-                print_logs(console, processes.tails())
-            raise
+    outcome, arm, name = perform(options.robot or arm7_path(), options.hold, options.view, console,
+                                 options.params_file)
     print_outcome(console, outcome)
-    draw(outcome, arm, robot_name(text), options.output)
+    draw(outcome, arm, name, options.output)
     console.print(f'figure: {options.output}', markup=False)
     return _verdict(outcome, console)
 
 
+def perform(path: Path, hold: float, view: bool, console: Console,
+            params_file: Path | None = None) -> tuple[Outcome, MujocoArm, str]:
+    """
+    Tell the story to the robot of a URDF file.
+
+    Parameters
+    ----------
+    path : Path
+        The URDF file.
+    hold : float
+        How long the node holds the arm before the push, s.
+    view : bool
+        Whether MuJoCo's viewer shows it.
+    console : Console
+        Where to print what happens.
+    params_file : Path, optional
+        Parameters of the node.
+
+    Returns
+    -------
+    outcome : Outcome
+        All joint states and what was measured.
+    arm : MujocoArm
+        The same robot for computations of one's own.
+    name : str
+        Its name in the URDF.
+
+    Raises
+    ------
+    DemoError
+        If something that the story needs does not come; the logs are printed then.
+    RobotRefusedError
+        If the robot cannot be simulated.
+
+    """
+    text = read_robot(path)
+    arm, name = MujocoArm(text), robot_name(text)
+    console.print(f'[bold]{name}[/bold], driven joints: {len(arm.driven)}, simulated '
+                  f'by MuJoCo, held by dynamics_node (domain {os.environ["ROS_DOMAIN_ID"]})')
+    with Processes() as processes:
+        try:
+            _start(processes, path, arm, view, console, params_file)
+            return _tell(processes, arm, hold, console), arm, name
+        except DemoError:
+            print_logs(console, processes.tails())
+            raise
+
+
 def _start(processes: Processes, path: Path, arm: MujocoArm, view: bool,
-           console: Console) -> None:
+           console: Console, params_file: Path | None) -> None:
     """Start the simulated robot and the node."""
     processes.start('simulated_robot', 'dynamics_node.ros.demo.simulated_robot',
                     *(['--view'] if view else []),
                     '--ros-args', '-p', f'robot_description_file:={path.resolve()}')
     parameters = ['--ros-args', '-p', f'state_timeout:={STATE_TIMEOUT}']
     missing = joints_without_limit(arm)
-    if missing:
+    if params_file is not None:
+        parameters += ['--params-file', str(params_file.resolve(strict=True))]
+    elif missing:
         limits = ', '.join(f'{limit:.1f}' for limit in filled_in_limits(arm))
         parameters += ['-p', f'effort_limits:=[{limits}]']
         console.print(f'The URDF states no effort limit for {", ".join(missing)}, and the node '

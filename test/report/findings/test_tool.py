@@ -19,7 +19,8 @@ def test_a_gripper_that_is_seen_without_mass_is_a_warning():
     [found] = findings(changed(arm(), 'gripper', inertial=False))
     assert (found.severity, found.subjects) == ('warning', ('gripper',))
     # 1 kg at 0.3 + 0.25 + 0.2 + 0.15 m from joint 2.
-    assert f'{G * 0.9:.3g} N m to joint \'joint2\', {100.0 * G * 0.9 / 300.0:.3g} %' in found.effect
+    torque = G * 0.9
+    assert f"{torque:.3g} N m to joint 'joint2', {torque / 3.0:.3g} %" in found.effect
     assert 'payload.link: gripper' in found.advice
 
 

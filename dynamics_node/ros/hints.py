@@ -1,0 +1,166 @@
+"""What the log says when the node waits for something: what is missing, and what to type."""
+
+import time
+
+from .elsewhere import listened_elsewhere, published_elsewhere
+from .mismatch import mismatches
+from .throttle import Throttle
+from ..errors import quoted
+
+# Seconds without a description or without joint states after which there is a hint.
+PATIENCE = 5.0
+# The shortest time between two of them, s.
+REPEAT_EVERY = 10.0
+# Names that a hint shows of a list.
+SHOWN = 8
+
+
+class Hints:
+    """Looks now and then whether the node still waits, and says how to go on."""
+
+    def __init__(self, node, get_robot, source, states, now=time.monotonic):
+        """
+        Begin to wait.
+
+        Parameters
+        ----------
+        node : rclpy.node.Node
+        get_robot : callable() -> Robot or None
+        source : DescriptionSource
+        states : StateInput
+        now : callable() -> float
+            Steady clock, s.
+
+        """
+        self.logger = node.get_logger()
+        self._node = node
+        self._get_robot = get_robot
+        self._source = source
+        self._states = states
+        self._now = now
+        self._start = now()
+        self._due = Throttle(REPEAT_EVERY, now)
+
+    def give(self):
+        """Log what is missing and what to type, if something is missing for too long."""
+        if self._now() - self._start < PATIENCE:
+            return
+        robot = self._get_robot()
+        if robot is None:
+            self._say(self._about_description)
+            return
+        missing = robot.buffer.stale_joints(self._now(), PATIENCE)
+        if missing:
+            self._say(lambda: self._about_states(robot, missing))
+
+    def _say(self, text):
+        if self._due.is_due():
+            self.logger.warning(text())
+
+    def _about_description(self):
+        subscription = self._source.subscription
+        lines = [f'no robot description on {self._source.topic} for {PATIENCE:g} s.']
+        lines += self._heard_elsewhere(subscription, 'robot_description')
+        if len(lines) == 1:
+            lines += [
+                'Publish it: ros2 run robot_state_publisher robot_state_publisher --ros-args -p '
+                'robot_description:="$(cat my_arm.urdf)"',
+                'or start this node with it: ros2 run dynamics_node dynamics_node --ros-args -p '
+                'robot_description_file:=my_arm.urdf']
+        return '\n  '.join(lines)
+
+    def _about_states(self, robot, missing):
+        topic = self._states.topic
+        lines = [f'no joint state on {topic} for {_some(missing)} for {PATIENCE:g} s.']
+        lines += self._heard_elsewhere(self._states.subscription, 'joint_states')
+        if len(lines) == 1:
+            heard = robot.buffer.newest_names
+            lines += _about_names(robot, missing, heard, topic) if heard else [
+                f'Nobody is heard there. Who publishes: ros2 topic info --verbose {topic}',
+                'Start the broadcaster: ros2 control load_controller --set-state active '
+                'joint_state_broadcaster']
+        return '\n  '.join(lines)
+
+    def _heard_elsewhere(self, subscription, name):
+        # First who is there and not heard, then who is somewhere else.
+        texts = mismatches(self._node, subscription)
+        if texts:
+            return [f'{text}.' for text in texts]
+        if self._node.count_publishers(subscription.topic_name):
+            return []
+        own = self._node.get_namespace().rstrip('/')
+        return [f'But {topic} has it: add to the command line  --ros-args '
+                f'{_rule(topic, name, own)}'
+                for topic in published_elsewhere(self._node, subscription)]
+
+
+def unheard(node, publisher):
+    """
+    Return what to say of commands to which nobody listens.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+    publisher : rclpy.publisher.Publisher
+        Of the command topic.
+
+    Returns
+    -------
+    str
+        What it is, and what to type.
+
+    """
+    topic = publisher.topic_name
+    listened = listened_elsewhere(node, publisher)
+    if listened:
+        return ('nobody listens there, but somebody does on ' + ', '.join(listened) + ': start '
+                f'the node with  --ros-args -p command_topic:={listened[0]}')
+    namespace, _, controller = topic.rpartition('/')[0].rpartition('/')
+    manager = f' --controller-manager {namespace}/controller_manager' if namespace else ''
+    return ('nobody listens there: look with  ros2 control list_controllers' + manager
+            + f'  and start it with  ros2 control load_controller{manager} --set-state active '
+            f'{controller or "forward_effort_controller"}  or set command_topic to that of '
+            'another effort controller')
+
+
+def _rule(topic, name, own):
+    namespace, _, last = topic.rpartition('/')
+    if last == name and namespace != own and not own:
+        return f'-r __ns:={namespace}'  # everything else of that robot is there, too
+    return f'-r {name}:={topic}'
+
+
+def _about_names(robot, missing, heard, topic):
+    # Messages come, but nothing that can be used of these joints.
+    lines = [f'There come {_some([quoted(name) for name in heard])}: look with  '
+             f'ros2 topic echo --once {topic}']
+    if set(missing) <= set(heard):
+        dropped = ', '.join(f'{count} for {kind}'
+                            for kind, count in robot.buffer.rejected.most_common())
+        return [*lines, f'They are dropped ({dropped}): the warnings above say why'] \
+            if dropped else lines
+    prefix = _prefix(missing, heard)
+    if prefix:
+        return [*lines, f'They are named with {quoted(prefix)} before: use the description in '
+                        'which the joints have these names (often an argument of its xacro '
+                        'file, prefix or tf_prefix)']
+    there = [name for name in robot.joint_names if name not in missing]
+    if there:
+        return [*lines, 'If the others are all that you want: add to the command line  '
+                        f"--ros-args -p joints:='[{', '.join(there)}]'"]
+    return [*lines, 'The description must name its joints as they are named there']
+
+
+def _prefix(missing, heard):
+    """Return what stands before every missing name in the names heard, '' if nothing does."""
+    for name in heard:
+        if name.endswith(missing[0]):
+            prefix = name[:len(name) - len(missing[0])]
+            if all(prefix + other in heard for other in missing):
+                return prefix
+    return ''
+
+
+def _some(names):
+    more = len(names) - SHOWN
+    return ', '.join(names[:SHOWN]) + (f' and {more} more' if more > 0 else '')

@@ -1,0 +1,139 @@
+"""An arm as MuJoCo renders it offscreen, cut out of its background."""
+
+import os
+from pathlib import Path
+
+# Before mujoco is imported: it chooses its OpenGL when it is.
+os.environ.setdefault('MUJOCO_GL', 'egl')
+
+import mujoco  # noqa: E402
+import numpy as np  # noqa: E402
+
+from dynamics_node.ros.demo.robot_text import mujoco_text  # noqa: E402
+
+# Rendered so much larger and averaged: the cut-out has smooth edges.
+OVERSAMPLING = 3
+PLATE_RADIUS, PLATE_HEIGHT = 0.16, 0.03  # m, what the arm is bolted to
+
+
+class NoOpenGLError(RuntimeError):
+    """Nothing here can render offscreen; the message says what to install."""
+
+
+class ArmRenderer:
+    """Renders a robot at any position from one camera, as RGBA with a clear background."""
+
+    def __init__(self, path, width, height, lookat, distance, azimuth=90.0, elevation=-12.0):
+        """
+        Open the renderer.
+
+        Parameters
+        ----------
+        path : Path
+            URDF file; its visual shapes are drawn, meshes are not.
+        width, height : int
+            Of the pictures, in pixels.
+        lookat : sequence of 3 floats
+            What the camera looks at, m, in the frame of the root link.
+        distance : float
+            Of the camera from there, m.
+        azimuth, elevation : float
+            Where it stands, degrees.
+
+        Raises
+        ------
+        NoOpenGLError
+            If there is no offscreen OpenGL.
+
+        """
+        spec = mujoco.MjSpec.from_string(mujoco_text(Path(path).read_text(encoding='utf-8')))
+        _furnish(spec)
+        self.model = spec.compile()
+        self.data = mujoco.MjData(self.model)
+        self._camera = mujoco.MjvCamera()
+        self._camera.lookat[:], self._camera.distance = lookat, distance
+        self._camera.azimuth, self._camera.elevation = azimuth, elevation
+        size = height * OVERSAMPLING, width * OVERSAMPLING
+        self.model.vis.global_.offheight, self.model.vis.global_.offwidth = size
+        try:
+            self._renderer = mujoco.Renderer(self.model, *size)
+        except Exception as error:  # whatever the OpenGL of this machine raises
+            raise NoOpenGLError(
+                'MuJoCo cannot render here with MUJOCO_GL='
+                f'{os.environ["MUJOCO_GL"]} ({error}); install libegl1 (then '
+                'MUJOCO_GL=egl) or libosmesa6 (then MUJOCO_GL=osmesa)') from error
+
+    def close(self):
+        """Give the OpenGL context back."""
+        self._renderer.close()
+
+    def frame(self, position):
+        """
+        Render the arm at a position.
+
+        Parameters
+        ----------
+        position : dict of str to float
+            Joint name → position, rad or m, of every movable joint.
+
+        Returns
+        -------
+        ndarray, shape (height, width, 4)
+            RGBA, 0 to 1; alpha is the part of a pixel that the arm covers.
+
+        """
+        for name, value in position.items():
+            self.data.qpos[self.model.joint(name).qposadr[0]] = value
+        mujoco.mj_forward(self.model, self.data)
+        self._renderer.update_scene(self.data, self._camera)
+        color = self._renderer.render().astype(float) / 255.0
+        self._renderer.enable_segmentation_rendering()
+        self._renderer.update_scene(self.data, self._camera)
+        covered = (self._renderer.render()[:, :, 0] >= 0).astype(float)[:, :, None]
+        self._renderer.disable_segmentation_rendering()
+        alpha = _averaged(covered)
+        # The colour of the covered part alone, so that no edge of the background is left.
+        return np.concatenate((_averaged(color * covered) / np.maximum(alpha, 1e-9), alpha), 2)
+
+
+def over(picture, frame, opacity=1.0):
+    """
+    Lay a frame over a picture.
+
+    Parameters
+    ----------
+    picture : ndarray, shape (height, width, 3)
+        RGB, 0 to 1.
+    frame : ndarray, shape (height, width, 4)
+        As `ArmRenderer.frame` returns it.
+    opacity : float
+
+    Returns
+    -------
+    ndarray, shape (height, width, 3)
+
+    """
+    alpha = opacity * frame[:, :, 3:]
+    return picture * (1.0 - alpha) + frame[:, :, :3] * alpha
+
+
+def _averaged(picture):
+    """Average squares of OVERSAMPLING pixels, shape (h k, w k, c) → (h, w, c)."""
+    height, width, channels = picture.shape
+    k = OVERSAMPLING
+    return picture.reshape(height // k, k, width // k, k, channels).mean((1, 3))
+
+
+def _furnish(spec):
+    """Add lights, and a plate on which the arm stands."""
+    spec.visual.headlight.ambient = [0.45, 0.45, 0.45]
+    spec.visual.headlight.diffuse = [0.25, 0.25, 0.25]
+    spec.visual.headlight.specular = [0.1, 0.1, 0.1]
+    light = spec.worldbody.add_light()
+    light.pos, light.dir = [1.0, -2.0, 3.0], [-0.3, 0.6, -1.0]
+    light.type = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
+    light.diffuse, light.castshadow = [0.5, 0.5, 0.5], True
+    plate = spec.worldbody.add_geom()
+    plate.type = mujoco.mjtGeom.mjGEOM_CYLINDER
+    plate.size = [PLATE_RADIUS, PLATE_HEIGHT / 2, 0.0]
+    plate.pos, plate.rgba = [0.0, 0.0, -PLATE_HEIGHT / 2], [0.62, 0.64, 0.68, 1.0]

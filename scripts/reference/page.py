@@ -1,0 +1,160 @@
+"""docs/reference.md as text."""
+
+from pathlib import Path
+import re
+
+from dynamics_node.ros.command_line import parser
+from dynamics_node.ros.parameter_table import PARAMETERS
+
+from . import graph, interfaces, launch_files
+
+ROOT = Path(__file__).resolve().parents[2]
+PATH = ROOT / 'docs' / 'reference.md'
+INTERFACES = ROOT / 'dynamics_interfaces'
+
+HEAD = """# Reference
+
+Written by `scripts/write_reference.py` from the parameter table, the interface files and the launch
+files; do not edit by hand. A test compares it with a running node.
+
+Units are SI. Names are relative or private (`~` is the node, `/dynamics_node` by default), so
+namespaces and remapping work. n is the number of joints, in the order of the parameter `joints`.
+A joint that is not in `joints` still carries mass: it stands at its measured position, or at its
+neutral one (zero, or the nearest within the limits) while it was never measured.
+
+[Topics](#topics) · [Services](#services) · [Parameters](#parameters) ·
+[Programs and launch files](#programs-and-launch-files) · [Messages](#messages) ·
+[Service types](#service-types)"""
+
+EXTERNAL_TORQUE = """**External torque.** With `publish_external_torque: true`, `~/external_torque` says
+in N m or N what pushes each joint from outside. joint_states needs velocities, and efforts that are
+joint torques with gravity ([whose are](arms.md)); `/diagnostics` says what is missing or can hardly be
+right. An unknown payload or friction counts as a push. States must come at more than 10 Hz, and parts
+of a state count when all have come."""
+
+SERVICES = """All answer `success` and `message`; on failure every array is empty. The empty request `{}`
+asks for the newest measured position, at rest; `position` and `velocity` ask for another state,
+`joint_names` for another order. Matrices are row-major."""
+
+PARAMETERS_TEXT = """A commented file with all of them: [config/dynamics.yaml](../config/dynamics.yaml).
+Wrong values are refused with the reason, at the start and at run time. Read-only ones are set at
+the start."""
+
+PROGRAMS = """| command | what it is |
+|---|---|
+| `ros2 run dynamics_node dynamics_node` | the node |
+| `ros2 run dynamics_node simulated_robot` | an arm in MuJoCo with brakes, to try the node with |
+| `ros2 run dynamics_node demo` | the demo: `make demo` without make |
+
+Where ROS 2 comes from PyPI there is no `ros2` command; `python -m dynamics_node.ros.main`,
+`python -m dynamics_node.ros.demo.simulated_robot` and `python -m dynamics_node.ros.demo.demo` are the
+same programs."""
+
+OPTIONS = """Both cost latency and processor time. The leaner executor rests on the inside of rclpy
+7.1; where that is different it steps back by itself."""
+
+
+def render():
+    """
+    Return the page.
+
+    Returns
+    -------
+    str
+        Markdown.
+
+    """
+    return '\n\n'.join([
+        HEAD,
+        '## Topics', '### Subscribed', _entries('topic', 'notes', graph.SUBSCRIBED),
+        '### Published', _entries('topic', 'when', graph.PUBLISHED),
+        EXTERNAL_TORQUE,
+        '## Services', SERVICES, _entries('service', 'answer', graph.SERVICES),
+        '## Parameters', PARAMETERS_TEXT, _parameters(),
+        '## Programs and launch files', PROGRAMS, *_launch_files(),
+        'Options of the process, not parameters: `ros2 run dynamics_node dynamics_node --executor '
+        'rclpy --no-raw-states`.', _options(), OPTIONS,
+        '## Messages', *_interfaces('msg', [None]),
+        '## Service types', *_interfaces('srv', ['request', 'answer']),
+    ]) + '\n'
+
+
+def _table(headings, rows):
+    lines = ['| ' + ' | '.join(headings) + ' |', '|' + '---|' * len(headings)]
+    return '\n'.join([*lines, *('| ' + ' | '.join(row) + ' |' for row in rows)])
+
+
+def _entries(title, words, entries):
+    return _table([title, 'type', words],
+                  [[f'`{entry.name}`', _linked(entry.kind), entry.words] for entry in entries])
+
+
+def _linked(kind):
+    """Return a type, linked to its fields where they stand on this page."""
+    name = kind.rpartition('/')[2]
+    return f'[{kind}](#{name.lower()})' if kind.startswith('dynamics_interfaces/') else kind
+
+
+def shown(default):
+    """
+    Return a parameter's default as people write it on the command line.
+
+    Parameters
+    ----------
+    default : bool, float, str or tuple
+
+    Returns
+    -------
+    str
+
+    """
+    if isinstance(default, bool):
+        return str(default).lower()
+    if isinstance(default, tuple):
+        return str(list(default))
+    return "''" if default == '' else str(default)
+
+
+def _parameters():
+    rows = []
+    for parameter in PARAMETERS:
+        accepts = parameter.constraints()
+        notes = [parameter.description, f'Accepts {accepts}' if accepts else '',
+                 'Read-only' if parameter.read_only else '']
+        rows.append([f'`{parameter.name}`', parameter.kind, f'`{shown(parameter.default)}`',
+                     _coded('. '.join(note for note in notes if note))])
+    return _table(['name', 'type', 'default', 'meaning'], rows)
+
+
+def _coded(words):
+    """Mark what Markdown would take for its own: tags, and names with underscores."""
+    return re.sub(r'(<[a-z][^<>=]*>|~/\w+|\b[a-z]+(?:_[a-z]+)+(?:\.[a-z]+)?\b)', r'`\1`', words)
+
+
+def _launch_files():
+    parts = []
+    for path in sorted((ROOT / 'launch').glob('*.launch.py')):
+        introduction, arguments = launch_files.read(path)
+        parts.append(f'`ros2 launch dynamics_node {path.name}`: {introduction}')
+        if arguments:
+            parts.append(_table(['argument', 'meaning'], [[f'`{argument.name}:=`', argument.words]
+                                                          for argument in arguments]))
+    return parts
+
+
+def _options():
+    return _table(['option', 'meaning'], [
+        [', '.join(f'`{flag}`' for flag in action.option_strings), action.help]
+        for action in parser()._actions if action.dest != 'help'])
+
+
+def _interfaces(folder, titles):
+    parts = []
+    for path in sorted((INTERFACES / folder).glob(f'*.{folder}')):
+        interface = interfaces.read(path)
+        parts += [f'### {interface.title}', ' '.join(interface.introduction)]
+        for title, fields in zip(titles, interface.parts, strict=True):
+            parts.append(_table([title or 'field', 'type', 'meaning'], [
+                [f'`{item.name}`' + (f' = {item.value}' if item.value else ''), item.kind,
+                 item.words] for item in fields]))
+    return parts

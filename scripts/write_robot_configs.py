@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""
+Write config/robots/*.yaml: parameter files for a first try of the arms that the demo holds.
+
+The limits follow from the URDF: what gravity needs anywhere in the range of the joints, and a
+quarter more. In `make shell`:
+
+    python scripts/write_robot_configs.py
+
+and try each with the demo, as its first lines say.
+
+"""
+
+from dataclasses import dataclass
+import math
+from pathlib import Path
+import sys
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT), str(ROOT / 'test')]
+
+import numpy as np  # noqa: E402
+from support.robots import ARM7, public_robot  # noqa: E402
+
+from dynamics_node import RobotModel  # noqa: E402
+
+FOLDER = ROOT / 'config' / 'robots'
+SAMPLES, SEED = 20_000, 7
+# Of the largest gravity torque; and at least this part of what the URDF allows.
+MARGIN, LEAST = 1.25, 0.05
+
+COMPENSATES = ('THE REAL ARM COMPENSATES GRAVITY ITSELF: never enable the output there, it would',
+               'be pushed up (docs/arms.md). Use the services and ~/gravity_torque.')
+UNKNOWN = ('Whether the real arm compensates gravity below its effort interface was not found out:',
+           'command zero effort and let it go gently before you enable anything (docs/arms.md).')
+
+
+@dataclass(frozen=True)
+class Arm:
+    """An arm: its URDF in example-robot-data (or of this repository), and what to beware of."""
+
+    title: str
+    urdf: str
+    warning: tuple
+
+
+ARMS = {
+    'arm7': Arm('the arm of this repository', '', ('There is no real one: it was designed for the '
+                                                  'demo.',)),
+    'ur5': Arm('Universal Robots UR5', 'ur_description/urdf/ur5_robot.urdf', COMPENSATES),
+    'panda': Arm('Franka Panda with its hand', 'panda_description/urdf/panda.urdf', COMPENSATES),
+    'kinova_j2s6s200': Arm('Kinova Jaco (Gen2, 6 joints)',
+                           'kinova_description/robots/kinova.urdf', COMPENSATES),
+    'xarm7': Arm('UFACTORY xArm7', 'xarm_description/urdf/xarm7.urdf', UNKNOWN),
+    'z1': Arm('Unitree Z1 with its gripper', 'z1_description/urdf/z1.urdf', UNKNOWN),
+}
+
+
+def urdf_path(arm):
+    """Return the path of an arm's URDF."""
+    return public_robot(arm.urdf) if arm.urdf else ARM7
+
+
+def worst_gravity_torque(robot):
+    """
+    Return the largest absolute gravity torque of each joint, shape (n,), N m or N.
+
+    Over SAMPLES positions drawn evenly from the limits; a joint without limits turns once.
+
+    """
+    lower, upper = (np.where(np.isfinite(limit), limit, sign * math.pi)
+                    for limit, sign in zip(robot.position_limits.T, (-1.0, 1.0)))
+    rng = np.random.default_rng(SEED)
+    q = rng.uniform(lower, upper, (SAMPLES, len(lower)))
+    return np.abs(robot.gravity_torque(q)).max(0)
+
+
+def first_limits(robot):
+    """Return effort limits for a first try, shape (n,), N m or N, rounded up to a tenth."""
+    allowed = np.where(np.isfinite(robot.effort_limits), robot.effort_limits, np.inf)
+    least = np.where(np.isfinite(allowed), LEAST * allowed, 0.1)
+    wanted = np.ceil(10.0 * np.maximum(MARGIN * worst_gravity_torque(robot), least)) / 10.0
+    return np.minimum(wanted, allowed)
+
+
+def render(name):
+    """Return the parameter file of an arm."""
+    arm = ARMS[name]
+    robot = RobotModel.from_urdf(urdf_path(arm))
+    where = f'example-robot-data, {arm.urdf}' if arm.urdf else 'config/robots/arm7.urdf'
+    path = 'arm7.urdf' if not arm.urdf else Path(arm.urdf).name
+    warning = '\n'.join(f'# {line}' for line in arm.warning)
+    joints = '\n'.join(f'      - {joint}' for joint in robot.joint_names)
+    limits = ', '.join(f'{limit:.1f}' for limit in first_limits(robot))
+    return f"""# {name}: {arm.title}, for a first try. URDF: {where}.
+#
+# Simulated only: the demo held this arm in MuJoCo with these parameters, no real one was tried.
+{warning}
+#
+#     python -m dynamics_node.ros.demo.demo --robot {path} --params-file {name}.yaml
+
+/**/dynamics_node:
+  ros__parameters:
+    # The order of the efforts: the effort controller must have the same `joints`.
+    joints:
+{joints}
+
+    # N m or N: what gravity needs anywhere in the range of the joints and a quarter more, at least
+    # a twentieth of the URDF's limit and never above it. Nothing is left for a payload.
+    effort_limits: [{limits}]
+"""
+
+
+if __name__ == '__main__':
+    for name in ARMS:
+        path = FOLDER / f'{name}.yaml'
+        path.write_text(render(name), encoding='utf-8')
+        print(f'wrote {path.relative_to(ROOT)}')

@@ -1,0 +1,204 @@
+"""What the node says when it waits: what is missing, and what to type. Real topics, own clock."""
+
+from types import SimpleNamespace
+
+from dynamics_node import RobotModel
+from dynamics_node.output import RejectedStateError
+from dynamics_node.ros.description_source import DescriptionSource
+from dynamics_node.ros.hints import Hints, PATIENCE, REPEAT_EVERY, unheard
+from dynamics_node.ros.robot import Robot
+import numpy as np
+import pytest
+from rcl_interfaces.msg import Log
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray, String
+from support.processes import Client, LATCHED
+from support.robots import ARM7, PENDULUM
+
+ARM = RobotModel.from_urdf(ARM7)
+NO_DESCRIPTION = {'robot_description': '', 'robot_description_file': ''}
+
+
+@pytest.fixture
+def other():
+    """Return a second participant: what it publishes is not the node's own."""
+    other = Client('other')
+    yield other
+    other.close()
+
+
+class Waiting:
+    """Hints of a real node, with a clock that the test turns."""
+
+    def __init__(self, namespace=''):
+        # A client has publishers of its own on both topics, so the node is not one of them.
+        self.client = Client('waiting', namespace=namespace)
+        node = self.client.node
+        node.destroy_publisher(self.client.states)
+        node.destroy_publisher(self.client.description)
+        self.robot, self.time = None, 0.0
+        source = DescriptionSource(node, NO_DESCRIPTION, lambda *_: True)
+        subscription = node.create_subscription(JointState, 'joint_states', lambda _: None,
+                                                qos_profile_sensor_data)
+        states = SimpleNamespace(subscription=subscription, topic=subscription.topic_name)
+        self.hints = Hints(node, lambda: self.robot, source, states, lambda: self.time)
+
+    def describe(self, names=()):
+        """Take the description of arm7, of which joints are wanted."""
+        self.robot = Robot(ARM, names)
+
+    def feed(self, names, position=None):
+        """Take a joint state."""
+        self.robot.buffer.update(self.time, list(names),
+                                 [0.1] * len(names) if position is None else position)
+
+    def after(self, seconds, capfd):
+        """Return what the log says in the hint that is given some seconds later."""
+        capfd.readouterr()
+        self.time += seconds
+        self.hints.give()
+        return capfd.readouterr().err
+
+
+@pytest.fixture
+def waiting():
+    """Return hints in no namespace."""
+    waiting = Waiting()
+    yield waiting
+    waiting.client.close()
+
+
+def test_nothing_is_said_too_early_too_often_or_without_need(waiting, capfd):
+    assert waiting.after(0.99 * PATIENCE, capfd) == ''
+    assert 'no robot description' in waiting.after(0.01 * PATIENCE, capfd)
+    assert waiting.after(0.9 * REPEAT_EVERY, capfd) == ''
+    assert 'no robot description' in waiting.after(0.1 * REPEAT_EVERY, capfd)
+    waiting.describe()
+    waiting.time += REPEAT_EVERY
+    waiting.feed(ARM.joint_names)
+    assert waiting.after(0.0, capfd) == ''
+    assert waiting.after(0.9 * PATIENCE, capfd) == ''
+    assert 'no joint state' in waiting.after(0.2 * PATIENCE, capfd)
+
+
+def test_without_a_description_two_ways_to_give_one(waiting, capfd):
+    text = waiting.after(PATIENCE, capfd)
+    assert 'no robot description on /robot_description for 5 s' in text
+    assert 'ros2 run robot_state_publisher robot_state_publisher --ros-args -p' in text
+    assert '-p robot_description_file:=my_arm.urdf' in text
+
+
+def test_a_description_in_another_namespace_is_found(waiting, other, capfd):
+    other.node.create_publisher(String, '/left/robot_description', LATCHED)
+    # Nobody publishes this one, so it helps nobody.
+    other.node.create_subscription(String, '/right/robot_description', lambda _: None, LATCHED)
+    # Has the name, but another type.
+    other.node.create_publisher(JointState, '/up/robot_description', LATCHED)
+    other.node.destroy_publisher(other.description)
+    graph = waiting.client.node
+    waiting.client.until(lambda: graph.count_publishers('/left/robot_description')
+                         and graph.count_publishers('/up/robot_description')
+                         and not graph.count_publishers('/robot_description'))
+    text = waiting.after(PATIENCE, capfd)
+    assert 'But /left/robot_description has it' in text
+    assert '--ros-args -r __ns:=/left' in text
+    assert '/right' not in text and '/up' not in text
+
+
+def test_in_a_namespace_of_its_own_only_the_topic_is_remapped(other, capfd):
+    waiting = Waiting('right')
+    try:
+        other.node.destroy_publisher(other.description)
+        other.node.create_publisher(String, '/left/robot_description', LATCHED)
+        waiting.client.until(
+            lambda: waiting.client.node.count_publishers('/left/robot_description')
+            and not waiting.client.node.count_publishers('/robot_description'))
+        text = waiting.after(PATIENCE, capfd)
+    finally:
+        waiting.client.close()
+    assert 'on /right/robot_description' in text
+    assert '-r robot_description:=/left/robot_description' in text
+
+
+def test_without_joint_states_the_broadcaster_is_started(waiting, capfd):
+    waiting.describe()
+    text = waiting.after(PATIENCE, capfd)
+    assert f'no joint state on /joint_states for {ARM.joint_names[0]}, ' in text
+    assert 'ros2 topic info --verbose /joint_states' in text
+    assert 'ros2 control load_controller --set-state active joint_state_broadcaster' in text
+
+
+def test_joint_states_under_another_name_are_found(waiting, other, capfd):
+    other.node.destroy_publisher(other.states)
+    other.node.create_publisher(JointState, '/arm/joint_states_raw', qos_profile_sensor_data)
+    waiting.client.until(
+        lambda: waiting.client.node.count_publishers('/arm/joint_states_raw')
+        and not waiting.client.node.count_publishers('/joint_states'))
+    waiting.describe()
+    text = waiting.after(PATIENCE, capfd)
+    assert '--ros-args -r joint_states:=/arm/joint_states_raw' in text
+
+
+def test_some_joints_are_missing(waiting, capfd):
+    waiting.describe()
+    there = ARM.joint_names[:-1]
+    for _ in range(4):
+        waiting.time += 2.0
+        waiting.feed(there)
+    text = waiting.after(0.0, capfd)
+    assert f'no joint state on /joint_states for {ARM.joint_names[-1]} for 5 s' in text
+    assert 'ros2 topic echo --once /joint_states' in text
+    assert f"-p joints:='[{', '.join(there)}]'" in text
+
+
+def test_a_prefix_before_every_name_is_recognised(waiting, capfd):
+    waiting.describe()
+    waiting.feed([f'left_{name}' for name in ARM.joint_names])
+    text = waiting.after(PATIENCE, capfd)
+    assert "named with 'left_' before" in text
+    assert 'prefix' in text
+    waiting.feed([*(f'left_{name}' for name in ARM.joint_names[:-1]), 'x' * 300, 'a\x1b[31m'])
+    text = waiting.after(REPEAT_EVERY, capfd)
+    assert 'The description must name its joints as they are named there' in text
+    assert '\x1b[31m' not in text and len(text) < 1500
+
+
+def test_dropped_states_are_not_taken_for_missing_names(waiting, capfd):
+    waiting.describe()
+    with pytest.raises(RejectedStateError):
+        waiting.feed(ARM.joint_names, [np.nan] * 8)
+    text = waiting.after(PATIENCE, capfd)
+    assert 'They are dropped (1 for not finite)' in text
+    assert 'joints:=' not in text
+
+
+def test_nobody_listens_to_the_commands(waiting, other):
+    node = waiting.client.node
+    publisher = node.create_publisher(Float64MultiArray, 'forward_effort_controller/commands', 1)
+    text = unheard(node, publisher)
+    assert 'ros2 control list_controllers' in text
+    assert 'ros2 control load_controller --set-state active forward_effort_controller' in text
+    in_namespace = node.create_publisher(Float64MultiArray, '/left/effort/commands', 1)
+    assert ('load_controller --controller-manager /left/controller_manager --set-state active '
+            'effort') in unheard(node, in_namespace)
+    assert 'active forward_effort_controller' in unheard(
+        node, node.create_publisher(Float64MultiArray, '/efforts', 1))
+    other.node.create_subscription(Float64MultiArray, '/arm_controller/commands',
+                                   lambda _: None, 1)
+    waiting.client.until(lambda: node.count_subscribers('/arm_controller/commands'))
+    assert '-p command_topic:=/arm_controller/commands' in unheard(node, publisher)
+
+
+def test_the_node_says_it_by_itself(client, start):
+    said = client.listen(Log, '/rosout')
+
+    def heard(text):
+        return [message for message in said if text in message.msg]
+    start('__node:=without_description')
+    client.until(lambda: heard('no robot description on /robot_description for 5 s'))
+    start('__node:=with_other_names', robot_description_file=PENDULUM)
+    client.until(lambda: heard("named with 'left_' before"),
+                 lambda: client.publish(['left_hinge'], [0.0]))
+    assert {message.name for message in heard(' for 5 s')} == {
+        'without_description', 'with_other_names'}
