@@ -2,7 +2,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench fuzz soak pictures lint build shell lock clean
+.PHONY: help demo report test bench fuzz soak pictures lint build shell lock clean
 
 # ROBOT, VIEW and PYTHON reach the scripts through the environment.
 
@@ -11,6 +11,9 @@ help: ## This list
 
 demo: ## A simulated arm held by the node; ROBOT=path.urdf: another robot, VIEW=1: in a window
 	@bash scripts/demo.sh
+
+report: ## What a URDF says, and what is wrong with it: ROBOT=path.urdf; ARGS='...': see ARGS=--help
+	@bash scripts/report.sh $(ARGS)
 
 test: ## All tests; ARGS='...': arguments of pytest
 	@bash scripts/test.sh $(ARGS)

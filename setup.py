@@ -16,11 +16,14 @@ setup(
     name=package_name,
     version='0.1.0',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
+    # What the page of the model report is made of: styles, scripts, parts of its markup.
+    package_data={f'{package_name}.report': ['page/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
         (f'share/{package_name}/launch', files('launch', '*.launch.py')),
-        (f'share/{package_name}/config', files('config', '*.yaml') + files('config', '*.xml')),
+        (f'share/{package_name}/config', files('config', '*.yaml') + files('config', '*.xml')
+         + files('config', '*.rviz')),
         (f'share/{package_name}/config/robots', files('config/robots', '*.urdf')),
     ],
     install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'scipy', 'yourdfpy'],
@@ -41,6 +44,7 @@ setup(
             'dynamics_node = dynamics_node.ros.main:main',
             'simulated_robot = dynamics_node.ros.demo.simulated_robot:main',
             'demo = dynamics_node.ros.demo.demo:main',
+            'report = dynamics_node.report.__main__:main',
         ],
     },
 )

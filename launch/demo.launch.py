@@ -5,15 +5,27 @@ Start a simulated arm and dynamics_node beside it; the arm's brakes are engaged.
     ros2 service call /dynamics_node/enable std_srvs/srv/SetBool '{data: true}'
     ros2 service call /simulated_robot/set_brakes std_srvs/srv/SetBool '{data: false}'
 
+With `rviz:=true` RViz shows masses, gravity and torques. With `namespace:=left` everything is
+below /left: two of them, left and right, are two arms that know nothing of each other.
+
 """
 
 from pathlib import Path
+from xml.etree import ElementTree
 
-from ament_index_python.packages import get_package_share_directory
+from ament_index_python.packages import (
+    get_package_prefix,
+    get_package_share_directory,
+    PackageNotFoundError,
+)
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction
+from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+
+# What shows the robot, and publishes the frames of its links.
+VIEWERS = ('rviz2', 'robot_state_publisher')
 
 
 def generate_launch_description():
@@ -24,11 +36,60 @@ def generate_launch_description():
                               description='Path of the URDF'),
         DeclareLaunchArgument('params_file', default_value=str(share / 'config/dynamics.yaml'),
                               description='Parameter file of the node'),
+        DeclareLaunchArgument('namespace', default_value='',
+                              description='Namespace of both and of their topics'),
         DeclareLaunchArgument('view', default_value='false',
                               description='Open the viewer of the simulated robot'),
+        DeclareLaunchArgument('rviz', default_value='false',
+                              description='Open RViz, if it is installed'),
         Node(package='dynamics_node', executable='simulated_robot', name='simulated_robot',
+             namespace=LaunchConfiguration('namespace'),
              parameters=[{'robot_description_file': LaunchConfiguration('robot'),
                           'view': LaunchConfiguration('view')}], output='screen'),
         Node(package='dynamics_node', executable='dynamics_node', name='dynamics_node',
+             namespace=LaunchConfiguration('namespace'),
              parameters=[LaunchConfiguration('params_file')], output='screen'),
+        OpaqueFunction(function=show, condition=IfCondition(LaunchConfiguration('rviz'))),
     ])
+
+
+def show(context):
+    """Return RViz and what it needs; without them the demo runs all the same, and says so."""
+    missing = [package for package in VIEWERS if not is_installed(package)]
+    if missing:
+        return [LogInfo(msg=f'rviz:=true: {" and ".join(missing)} not found, going on without; '
+                            'install ' + ' '.join(
+                                f'ros-$ROS_DISTRO-{package.replace("_", "-")}'
+                                for package in missing))]
+    config = Path(get_package_share_directory('dynamics_node')) / 'config/dynamics.rviz'
+    text = Path(LaunchConfiguration('robot').perform(context)).read_text(encoding='utf-8')
+    namespace = LaunchConfiguration('namespace')
+    # Link names are the same in every namespace, so each has its own frames.
+    frames = [('/tf', 'tf'), ('/tf_static', 'tf_static')]
+    return [
+        # The simulated robot has published the description already.
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+             namespace=namespace, parameters=[{'robot_description': text}],
+             remappings=[*frames, ('robot_description', '~/robot_description')]),
+        Node(package='rviz2', executable='rviz2', namespace=namespace,
+             arguments=['-d', str(config), '-f', root_link(text)],
+             remappings=[*frames, ('/robot_description', 'robot_description'),
+                         ('/dynamics_node/markers', 'dynamics_node/markers')]),
+    ]
+
+
+def is_installed(package):
+    """Tell whether a package is there."""
+    try:
+        get_package_prefix(package)
+    except PackageNotFoundError:
+        return False
+    return True
+
+
+def root_link(text):
+    """Return the link of a URDF that is nobody's child: the frame of the markers."""
+    robot = ElementTree.fromstring(text.encode())
+    children = {joint.find('child').get('link') for joint in robot.findall('joint')}
+    return next(link.get('name') for link in robot.findall('link')
+                if link.get('name') not in children)

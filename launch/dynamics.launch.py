@@ -2,6 +2,7 @@
 Start dynamics_node with a parameter file.
 
     ros2 launch dynamics_node dynamics.launch.py params_file:=my_dynamics.yaml namespace:=left
+    ros2 launch dynamics_node dynamics.launch.py robot:=my_arm.urdf joint_states:=/arm/states
 
 """
 
@@ -9,7 +10,7 @@ from pathlib import Path
 
 from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
@@ -22,7 +23,24 @@ def generate_launch_description():
                               description='Parameter file of the node'),
         DeclareLaunchArgument('namespace', default_value='',
                               description='Namespace of the node and its topics'),
-        Node(package='dynamics_node', executable='dynamics_node', name='dynamics_node',
-             namespace=LaunchConfiguration('namespace'),
-             parameters=[LaunchConfiguration('params_file')], output='screen'),
+        DeclareLaunchArgument('robot', default_value='', description='Path of the URDF. Empty: '
+                              'as params_file says, or the topic robot_description'),
+        DeclareLaunchArgument('joint_states', default_value='joint_states',
+                              description='Topic of the joint states'),
+        DeclareLaunchArgument('robot_description', default_value='robot_description',
+                              description='Topic of the robot description'),
+        OpaqueFunction(function=start_node),
     ])
+
+
+def start_node(context):
+    """Return the node; the argument robot counts more than the parameter file, if it is given."""
+    robot = LaunchConfiguration('robot').perform(context)
+    described = [{'robot_description_file': str(Path(robot).expanduser().resolve())}]
+    return [Node(
+        package='dynamics_node', executable='dynamics_node', name='dynamics_node',
+        namespace=LaunchConfiguration('namespace'),
+        parameters=[LaunchConfiguration('params_file'), *(described if robot else [])],
+        remappings=[(topic, LaunchConfiguration(topic))
+                    for topic in ('joint_states', 'robot_description')],
+        output='screen')]

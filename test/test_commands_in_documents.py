@@ -24,10 +24,10 @@ TOPICS = {entry.name.replace('~', '/dynamics_node')
 OTHER_PROGRAMS = {'controller_manager': {'ros2_control_node', 'spawner'},
                   'robot_state_publisher': {'robot_state_publisher'},
                   'mass_matrix_client': {'mass_matrix_client'}}
-VERBS = {'service call', 'pkg prefix', 'topic echo', 'topic info', 'param get',
-         'param set', 'interface show', 'run', 'launch', 'control switch_controllers', 'control load_controller',
-         'control list_controllers', 'security create_keystore', 'security create_enclave',
-         'security create_permission'}
+VERBS = {'service call', 'pkg prefix', 'topic echo', 'topic info', 'param get', 'param set',
+         'interface show', 'run', 'launch', 'control switch_controllers',
+         'control load_controller', 'control list_controllers', 'security create_keystore',
+         'security create_enclave', 'security create_permission'}
 
 
 def commands(beginning):

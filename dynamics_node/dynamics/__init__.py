@@ -10,6 +10,7 @@ from .held_joints import forward_dynamics_held
 from .joint_selection import JointSelection
 from .max_payload import MaxPayload
 from .momentum_observer import MomentumObserver
+from .one_off import one_off_model
 from .over_limit import over_limit, OverLimit
 from .payload import Payload
 from .robot_model import RobotModel
@@ -18,4 +19,4 @@ from .trajectory import complete_trajectory, Trajectory
 
 __all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload', 'MomentumObserver',
            'OverLimit', 'Payload', 'RobotModel', 'Trajectory', 'complete_trajectory',
-           'forward_dynamics_held', 'over_limit']
+           'forward_dynamics_held', 'one_off_model', 'over_limit']

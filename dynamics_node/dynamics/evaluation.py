@@ -164,15 +164,25 @@ class Evaluation:
             closed_form.jacobian(*self.packed, q, frame.body, inside, J)
         return J.reshape(*lead, 6, self._n)
 
+    def body_poses(self, q):
+        """Return the transforms of all N bodies to the base, the batch axes of q first."""
+        lead, [q] = self.states(q=q)
+        poses = self._body_poses(q, np.arange(len(self.packed[0])))
+        return poses.reshape(*lead, *poses.shape[1:])
+
+    def _body_poses(self, q, bodies):
+        poses = np.zeros((len(q), len(bodies), 4, 4))
+        upper = np.empty((len(q), len(bodies), 3, 4))
+        closed_form.body_poses(*self.packed, q, bodies, upper)
+        poses[:, :, :3], poses[:, :, 3, 3] = upper, 1.0
+        return poses
+
     def link_pose(self, q, frame):
         """Return the transform from a link (a `LinkFrame`) to the base, the batch axes first."""
         lead, [q] = self.states(q=q)
-        pose = np.zeros((len(q), 4, 4))
+        pose = np.empty((len(q), 4, 4))
         if frame.body >= 0:
-            body = np.empty((len(q), 3, 4))
-            closed_form.body_pose(*self.packed, q, frame.body, body)
-            pose[:, :3], pose[:, 3, 3] = body, 1.0
-            pose = pose @ frame.placement
+            pose = self._body_poses(q, np.array([frame.body]))[:, 0] @ frame.placement
         else:
             pose[:] = frame.placement
         return pose.reshape(*lead, 4, 4)

@@ -693,6 +693,32 @@ class RobotModel:
         check_link(self._tree.links, link)
         return self._evaluation.link_pose(q, self._tree.links[link])
 
+    def body_poses(self, q):
+        """
+        Return where all moving bodies are: the transforms from their frames to the base frame.
+
+        Parameters
+        ----------
+        q : array_like, shape (..., n)
+            Joint positions, rad or m.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., N, 4, 4)
+            Homogeneous transforms, m, in the order of `tree.body_names`.
+
+        Raises
+        ------
+        ArgumentError
+            If the last axis of q is not n.
+
+        References
+        ----------
+        docs/mathematics.md, section 4: A_k.
+
+        """
+        return self._evaluation.body_poses(q)
+
     def trajectory_effort(self, time, positions, velocities=None, accelerations=None):
         """
         Return the efforts along a trajectory: inverse dynamics at each of its points.

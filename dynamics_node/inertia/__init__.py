@@ -7,6 +7,7 @@ room of the package builds on these functions, so their conventions (frames, sig
 """
 
 from .consistency import check_physical, consistency_report, ConsistencyReport
+from .equivalent_box import equivalent_box, EquivalentBox
 from .integration import pseudo_inertia_by_integration
 from .pseudo_inertia import (
     axial_moments,
@@ -21,8 +22,8 @@ from .pseudo_inertia import (
 from .solids import box, cylinder, sphere
 
 __all__ = [
-    'ConsistencyReport', 'axial_moments', 'box', 'check_physical', 'combine',
-    'consistency_report', 'cylinder', 'inertia_tensor_at_com', 'mass_and_com',
+    'ConsistencyReport', 'EquivalentBox', 'axial_moments', 'box', 'check_physical', 'combine',
+    'consistency_report', 'cylinder', 'equivalent_box', 'inertia_tensor_at_com', 'mass_and_com',
     'planar_moments', 'pseudo_inertia', 'pseudo_inertia_by_integration', 'sphere', 'steiner',
     'transform_pseudo_inertia',
 ]

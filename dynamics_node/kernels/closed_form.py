@@ -196,28 +196,29 @@ def jacobian(structure, numbers, q, body, point, J):
 
 
 @compiled
-def body_pose(structure, numbers, q, body, A):
+def body_poses(structure, numbers, q, bodies, A):
     """
-    Compute the transform of a body at B states.
+    Compute the transforms of K bodies at B states.
 
     Parameters
     ----------
     structure, numbers : numpy.ndarray
         See `packing.pack`.
     q : numpy.ndarray, shape (B, n)
-    body : int
-        Row of the body.
-    A : numpy.ndarray, shape (B, 3, 4)
-        Overwritten: the upper three rows of the transform body → base, m.
+    bodies : numpy.ndarray of int64, shape (K,)
+        Rows of the bodies.
+    A : numpy.ndarray, shape (B, K, 3, 4)
+        Overwritten: the upper three rows of the transforms body → base, m.
 
     """
     pose, twist, composite = workspace(structure.shape[0])[:3]
     for b in range(q.shape[0]):
         outward(structure, numbers, q[b], pose, twist, composite)
-        for i in range(3):
-            for j in range(3):
-                A[b, i, j] = pose[body, OF_ROTATION + 3 * i + j]
-            A[b, i, 3] = pose[body, OF_ORIGIN + i]
+        for k in range(len(bodies)):
+            for i in range(3):
+                for j in range(3):
+                    A[b, k, i, j] = pose[bodies[k], OF_ROTATION + 3 * i + j]
+                A[b, k, i, 3] = pose[bodies[k], OF_ORIGIN + i]
 
 
 # One state ---------------------------------------------------------------------------------

@@ -6,7 +6,9 @@ outside this room sees XML or yourdfpy.
 
 """
 
-from .description import Inertial, Joint, Link, Mimic, RobotDescription
-from .read import read_urdf
+from .description import Inertial, Joint, Link, Mimic, RobotDescription, Stated
+from .examination import Examination
+from .read import examine_urdf, read_urdf
 
-__all__ = ['Inertial', 'Joint', 'Link', 'Mimic', 'RobotDescription', 'read_urdf']
+__all__ = ['Examination', 'Inertial', 'Joint', 'Link', 'Mimic', 'RobotDescription', 'Stated',
+           'examine_urdf', 'read_urdf']

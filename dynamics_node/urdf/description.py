@@ -28,10 +28,44 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Link:
-    """One link; `inertial` is None where the URDF has none."""
+    """
+    One link.
+
+    Attributes
+    ----------
+    name : str
+    inertial : Inertial or None
+        None where the URDF has none.
+    has_shape, has_visual : bool
+        Whether the URDF gives it a <visual> or a <collision>, and whether a <visual>: what can
+        be seen has a mass. The shape itself is never looked at.
+
+    """
 
     name: str
     inertial: Inertial | None = None
+    has_shape: bool = False
+    has_visual: bool = False
+
+
+@dataclass(frozen=True)
+class Stated:
+    """
+    What the URDF says about a joint, before anything is put in the place of nonsense.
+
+    Attributes
+    ----------
+    lower, upper, effort, velocity : float
+        The attributes of <limit>; NaN where they are missing.
+    has_axis : bool
+
+    """
+
+    lower: float = np.nan
+    upper: float = np.nan
+    effort: float = np.nan
+    velocity: float = np.nan
+    has_axis: bool = True
 
 
 @dataclass(frozen=True)
@@ -65,6 +99,8 @@ class Joint:
     damping, friction : float
         Viscous (N m s/rad, N s/m) and Coulomb (N m, N); 0 where the URDF states none.
     mimic : Mimic or None
+    stated : Stated
+        For people who look for mistakes; dynamics does not depend on it.
 
     """
 
@@ -81,6 +117,7 @@ class Joint:
     damping: float = 0.0
     friction: float = 0.0
     mimic: Mimic | None = None
+    stated: Stated = Stated()
 
     @property
     def is_movable(self):

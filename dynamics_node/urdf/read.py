@@ -7,7 +7,8 @@ from xml.etree import ElementTree
 import numpy as np
 
 from .attributes import is_number, LARGEST, number_problems
-from .description import Inertial, Joint, Link, Mimic, RobotDescription
+from .description import Inertial, Joint, Link, Mimic, RobotDescription, Stated
+from .examination import Examination, sound_parts
 from .guard import check_text
 from .inertial import inertial_findings
 from .source import load_text
@@ -48,6 +49,57 @@ def read_urdf(source):
         With all problems at once: link or joint, attribute, expected, got.
 
     """
+    found = examine_urdf(source)
+    if found.problems:
+        raise RobotDescriptionError(found.problems)
+    return found.description
+
+
+def examine_urdf(source):
+    """
+    Read a URDF as far as that is possible, for a report to those who have to mend it.
+
+    Parameters
+    ----------
+    source : str, bytes or os.PathLike
+        A path or the text itself.
+
+    Returns
+    -------
+    Examination
+        What could be read, and why it is refused, if it is.
+
+    Raises
+    ------
+    RobotDescriptionError
+        If it is no XML, no URDF, or refused before it is parsed: there is nothing to show then.
+
+    """
+    robot, name = _element(source)
+    visual, collision = ({link.get('name') for link in robot.findall('link')
+                          if link.find(tag) is not None} for tag in ('visual', 'collision'))
+    robot = _needed(robot)
+    # yourdfpy asks for one, of no use to it.
+    robot.set('name', 'robot')
+    problems = structure_problems(robot) + number_problems(robot)
+    unread: frozenset = frozenset()
+    is_whole = not problems
+    if problems:
+        robot, unread = sound_parts(robot)
+    stated = _take_soft_limits(robot)
+    parsed = _parse(robot)
+    moved = moved_links(robot) if is_whole else {link.name for link in parsed.links}
+    links, link_problems, link_warnings = _links(parsed.links, moved, visual | collision, visual)
+    joints, joint_problems, joint_warnings = _joints(parsed.joints, stated)
+    description = RobotDescription(name, root_link(robot) if is_whole else '', tuple(links),
+                                   tuple(joints), tuple(link_warnings + joint_warnings))
+    # Of parts, only what makes them parts: read_urdf says the rest when that is mended.
+    return Examination(description, tuple(problems or link_problems + joint_problems), is_whole,
+                       unread)
+
+
+def _element(source):
+    # The <robot> element and the robot's name.
     text = load_text(source)
     check_text(text)
     try:
@@ -60,24 +112,7 @@ def read_urdf(source):
     if any('xacro' in element.tag for element in robot.iter()):
         raise RobotDescriptionError(['it contains xacro elements: expand it first, with '
                                      '`xacro robot.urdf.xacro > robot.urdf`'])
-    name = robot.get('name') or 'robot'
-    robot = _needed(robot)
-    # yourdfpy asks for one, of no use to it.
-    robot.set('name', 'robot')
-    problems = structure_problems(robot) + number_problems(robot)
-    if problems:
-        raise RobotDescriptionError(problems)
-    limits = _take_soft_limits(robot)
-    # yourdfpy fills in its default, so this has to be seen before.
-    axisless = {joint.get('name') for joint in robot.findall('joint')
-                if joint.find('axis') is None}
-    parsed = _parse(robot)
-    links, link_problems, link_warnings = _links(parsed.links, moved_links(robot))
-    joints, joint_problems, joint_warnings = _joints(parsed.joints, limits, axisless)
-    if link_problems or joint_problems:
-        raise RobotDescriptionError(link_problems + joint_problems)
-    return RobotDescription(name, root_link(robot), tuple(links), tuple(joints),
-                            tuple(link_warnings + joint_warnings))
+    return robot, robot.get('name') or 'robot'
 
 
 def _needed(element):
@@ -97,13 +132,20 @@ def _take_soft_limits(robot):
     for joint in robot.findall('joint'):
         limit = joint.find('limit')
         attributes = {} if limit is None else limit.attrib
-        limits[joint.get('name')] = {name: _positive_or_nan(attributes.pop(name, ''))
-                                     for name in ('effort', 'velocity')}
+        stated = {name: _number_or_nan(attributes.get(name, ''))
+                  for name in ('lower', 'upper', 'effort', 'velocity')}
+        for name in ('effort', 'velocity'):
+            attributes.pop(name, '')
+        # yourdfpy fills in its default axis, so this has to be seen before.
+        limits[joint.get('name')] = Stated(**stated, has_axis=joint.find('axis') is not None)
     return limits
 
 
-def _positive_or_nan(text):
-    value = float(text) if is_number(text) else math.nan
+def _number_or_nan(text):
+    return float(text) if is_number(text) else math.nan
+
+
+def _positive_or_nan(value):
     return value if value > 0.0 else math.nan
 
 
@@ -112,7 +154,7 @@ def _parse(robot):
                              load_meshes=False).robot
 
 
-def _links(parsed, moved):
+def _links(parsed, moved, shaped, visual):
     links, problems, warnings = [], [], []
     for link in parsed:
         inertial = None
@@ -122,14 +164,14 @@ def _links(parsed, moved):
             found = inertial_findings(link.name, inertial, link.name in moved)
             problems += found[0]
             warnings += found[1]
-        links.append(Link(link.name, inertial))
+        links.append(Link(link.name, inertial, link.name in shaped, link.name in visual))
     return links, problems, warnings
 
 
-def _joints(parsed, limits, axisless):
+def _joints(parsed, stated):
     joints, problems, warnings = [], [], []
     for joint in parsed:
-        axis, problem, warning = _axis(joint, joint.name in axisless)
+        axis, problem, warning = _axis(joint, not stated[joint.name].has_axis)
         problems += problem
         warnings += warning
         lower, upper = _position_limits(joint)
@@ -137,8 +179,9 @@ def _joints(parsed, limits, axisless):
         warnings += warning
         joints.append(Joint(
             joint.name, joint.type, joint.parent, joint.child, _placement(joint.origin), axis,
-            lower, upper, **limits[joint.name],
-            **friction, mimic=_mimic(joint)))
+            lower, upper, _positive_or_nan(stated[joint.name].effort),
+            _positive_or_nan(stated[joint.name].velocity), **friction, mimic=_mimic(joint),
+            stated=stated[joint.name]))
     return joints, problems, warnings
 
 

@@ -44,6 +44,17 @@ def structure_problems(robot):
     return problems
 
 
+def part_problems(element):
+    """Return what is wrong with one <link> or <joint> by itself, whatever else there is."""
+    problems = _repetition_problems(element)
+    if element.tag == 'joint':
+        ends = {end.get('link') for tag in ('parent', 'child') for end in element.findall(tag)}
+        problems += _joint_problems(element, ends)
+        problems += [f'joint {quoted(element.get("name"))}: <mimic> names no joint'
+                     for mimic in element.findall('mimic') if not mimic.get('joint')]
+    return problems
+
+
 def root_link(robot):
     """Return the name of the link that is no joint's child; the structure must be sound."""
     children = {joint.find('child').get('link') for joint in robot.findall('joint')}

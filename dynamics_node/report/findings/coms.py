@@ -1,0 +1,41 @@
+"""Centres of mass that are outside the robot."""
+
+import numpy as np
+
+from .effects import changed, torque_effect
+from .hit import Hit, told
+from .kinds import WARNING
+from .words import number
+
+# A centre of mass further than this share of the reach, and so many times further than the
+# joints of the link and of its neighbours, is no part of it.
+_OF_REACH, _FURTHER = 0.6, 3.0
+
+
+def find_coms(case):
+    """Return links whose centre of mass cannot be where it is said to be."""
+    hits = []
+    for entry in case.moved_with_mass:
+        com = np.array(entry.com)
+        distance, reach = float(np.linalg.norm(com)), case.reach
+        around = max([case.size_without_com(entry.name), *(
+            case.size_without_com(other.child) for other in case.description.joints
+            if other.parent == entry.name)])
+        if not (reach > 0.0 and distance > _OF_REACH * reach and distance > _FURTHER * around):
+            continue
+        right = com * 1e-3 if 1e-3 * distance < 2.0 * max(around, 1e-3) else com / 10.0
+        said = 'a thousandth of that' if right[0] == com[0] * 1e-3 else 'a tenth of that'
+        hits.append(Hit(
+            WARNING, 'far_com', entry.name,
+            f"link '{entry.name}' has its centre of mass {number(distance)} m from its frame, in "
+            f'a robot whose joints reach {number(reach)} m', f'{number(distance)} m',
+            _later(case, entry.name, right,
+                   f'if it were {said}, {number(float(np.linalg.norm(right)))} m'),
+            'URDF has metres: were millimetres written, or the coordinates of the whole robot '
+            'instead of those in the link frame?', distance / reach))
+    return told(hits, lambda count: f'{count} links have their centre of mass outside the robot')
+
+
+def _later(case, link, com, if_what):
+    inertial = changed(case.links[link].inertial, com=com)
+    return lambda: torque_effect(case, {link: inertial}, if_what)

@@ -1,0 +1,101 @@
+// Draws the figures of the page with plotly, in the colours of the style sheet.
+const plots = (() => {
+  'use strict';
+
+  // Plotly's button that sends a chart to its makers has no place here.
+  const config = { displaylogo: false, displayModeBar: 'hover',
+    showSendToCloud: false, plotlyServerURL: '', showTips: false,
+    modeBarButtonsToRemove: ['zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'select2d', 'lasso2d',
+      'autoScale2d', 'resetScale2d', 'resetCameraLastSave3d', 'tableRotation', 'orbitRotation',
+      'zoom3d'] };
+  const drawn = new Map();
+  // plotly itself only sees that the window changes its size.
+  const sizes = new ResizeObserver((entries) => entries.forEach(({ target }) => {
+    const { width, height } = target._fullLayout ?? {};
+    const fits = width === target.clientWidth && height === target.clientHeight;
+    if (width && target.clientWidth && !fits) Plotly.Plots.resize(target);
+  }));
+
+  // A colour is {css: name} in a figure, so that no text of a robot can be taken for one.
+  function resolve(value, style) {
+    if (Array.isArray(value)) return value.map((part) => resolve(part, style));
+    if (value === null || typeof value !== 'object') return value;
+    if (typeof value.css === 'string') return style.getPropertyValue(`--${value.css}`).trim();
+    return Object.fromEntries(
+      Object.entries(value).map(([key, part]) => [key, resolve(part, style)]));
+  }
+
+  const colors = (value) => resolve(value, getComputedStyle(document.documentElement));
+
+  function draw(id, figure, height = figure.height) {
+    const place = document.getElementById(id);
+    if (height) place.style.height = `${height}px`;
+    if (!drawn.has(id)) sizes.observe(place);
+    drawn.set(id, figure);
+    const { data, layout } = colors({ data: figure.data, layout: figure.layout });
+    return Plotly.react(place, data, layout, config);
+  }
+
+  // Buttons that show the same thing in another measure.
+  function withModes(id, figure) {
+    const box = document.querySelector(`[data-modes="${id}"]`);
+    figure.modes.forEach((mode, place) => {
+      if (figure.modes.length < 2) return;
+      const chip = document.createElement('button');
+      chip.type = 'button';
+      chip.className = 'chip';
+      chip.textContent = mode.label;
+      chip.setAttribute('aria-pressed', String(place === 0));
+      chip.addEventListener('click', () => {
+        [...box.children].forEach((other) => {
+          other.setAttribute('aria-pressed', String(other === chip));
+        });
+        figure.data.forEach((trace, row) => { trace.visible = mode.visible[row]; });
+        Object.assign(figure.layout, mode.layout);
+        draw(id, figure);
+      });
+      box.append(chip);
+    });
+    return draw(id, figure);
+  }
+
+  // Curve and histogram of the joint that is chosen, here or at the arm.
+  function oneJoint(figures) {
+    const select = document.getElementById('joint-choice');
+    figures.names.forEach((name, place) => select.add(new Option(name, place)));
+    const show = (place) => {
+      select.value = String(place);
+      draw('plot-curve', figures.curves[place]);
+      draw('plot-histogram', figures.histograms[place]);
+    };
+    select.addEventListener('change', () => choose(Number(select.value), 'select'));
+    document.addEventListener('joint', ({ detail }) => show(detail.place));
+  }
+
+  // Tell all parts of the page which joint is looked at.
+  function choose(place, from) {
+    document.dispatchEvent(new CustomEvent('joint', { detail: { place, from } }));
+  }
+
+  function redraw() {
+    drawn.forEach((figure, id) => draw(id, figure));
+    document.dispatchEvent(new Event('recolor'));
+  }
+
+  function start(figures) {
+    withModes('plot-worst', figures.worst);
+    withModes('plot-distribution', figures.distribution);
+    draw('plot-mass', figures.mass);
+    oneJoint(figures.joint);
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
+    // Paper is white.
+    const paper = (on) => () => {
+      document.documentElement.classList.toggle('paper', on);
+      redraw();
+    };
+    addEventListener('beforeprint', paper(true));
+    addEventListener('afterprint', paper(false));
+  }
+
+  return { start, draw, choose, colors };
+})();
