@@ -4,10 +4,11 @@ Draw the pictures of the documents; `make pictures` runs it.
 
 floating     docs/floating.png, docs/floating.webp: the demo runs, is rendered and plotted
 workspace    docs/workspace.png: gravity torque and payload over the workspace of arm7
+report       docs/report_page.png: the page of the model report of an arm with a wrong mass
 benchmarks   docs/benchmarks_short.png: from docs/benchmarks.md, measures nothing
 
 Give names to draw only some. The first needs offscreen OpenGL: libegl1, or libosmesa6 and
-MUJOCO_GL=osmesa. The demo itself draws its own figure without.
+MUJOCO_GL=osmesa. The report needs chromium. The demo itself draws its own figure without.
 
 """
 
@@ -15,7 +16,7 @@ from pathlib import Path
 import sys
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / 'scripts')]
+sys.path[:0] = [str(ROOT), str(ROOT / 'scripts'), str(ROOT / 'test')]
 DOCS = ROOT / 'docs'
 ARM7 = ROOT / 'config' / 'robots' / 'arm7.urdf'
 
@@ -47,6 +48,12 @@ def workspace():
     workspace.draw(robot, DOCS / 'workspace.png')
 
 
+def report():
+    """Take a picture of the report's page."""
+    from pictures import report_page
+    report_page.draw(ARM7, DOCS / 'report_page.png')
+
+
 def benchmarks():
     """Draw the first table of the benchmarks."""
     from pictures import benchmarks
@@ -54,7 +61,8 @@ def benchmarks():
                     DOCS / 'benchmarks_short.png')
 
 
-PICTURES = {'floating': floating, 'workspace': workspace, 'benchmarks': benchmarks}
+PICTURES = {'floating': floating, 'workspace': workspace, 'report': report,
+            'benchmarks': benchmarks}
 
 
 def main(names):

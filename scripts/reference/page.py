@@ -44,11 +44,12 @@ the start and at run time. Read-only ones are set at the start."""
 PROGRAMS = """| command | what it is |
 |---|---|
 | `ros2 run dynamics_node dynamics_node` | the node |
+| `ros2 run dynamics_node report my_arm.urdf` | what the URDF says, and what is wrong with it |
 | `ros2 run dynamics_node simulated_robot` | an arm in MuJoCo with brakes, to try the node with |
 | `ros2 run dynamics_node demo` | the demo: `make demo` without make |
 
 Where ROS 2 comes from PyPI there is no `ros2` command; `python -m dynamics_node.ros.main`,
-`python -m dynamics_node.ros.demo.simulated_robot` and `python -m dynamics_node.ros.demo.demo`
+`python -m dynamics_node.report`, `python -m dynamics_node.ros.demo.simulated_robot` and `python -m dynamics_node.ros.demo.demo`
 are the same programs."""
 
 OPTIONS = """`--executor rclpy` and `--no-raw-states` cost latency and processor time. The leaner
