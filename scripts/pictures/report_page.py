@@ -38,7 +38,8 @@ def draw(robot, path):
         urdf, page = Path(folder) / 'my_arm.urdf', Path(folder) / 'page.html'
         urdf.write_text(text, encoding='utf-8')
         subprocess.run([sys.executable, '-m', 'dynamics_node.report', urdf.name, '--html',
-                        page.name], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                        page.name], cwd=folder, check=True, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
         with browser() as tab:
             tab.open(page, *SIZE)
             tab.settle()

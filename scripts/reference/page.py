@@ -49,8 +49,8 @@ PROGRAMS = """| command | what it is |
 | `ros2 run dynamics_node demo` | the demo: `make demo` without make |
 
 Where ROS 2 comes from PyPI there is no `ros2` command; `python -m dynamics_node.ros.main`,
-`python -m dynamics_node.report`, `python -m dynamics_node.ros.demo.simulated_robot` and `python -m dynamics_node.ros.demo.demo`
-are the same programs."""
+`python -m dynamics_node.report`, `python -m dynamics_node.ros.demo.simulated_robot` and
+`python -m dynamics_node.ros.demo.demo` are the same programs."""
 
 OPTIONS = """`--executor rclpy` and `--no-raw-states` cost latency and processor time. The leaner
 executor rests on the inside of rclpy 7.1; where that is different it steps back by itself."""
