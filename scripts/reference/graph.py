@@ -23,7 +23,8 @@ SUBSCRIBED = (
           'By name: any order, parts, other joints besides, no velocity: all fine. Best effort, '
           'the newest wins'),
     Entry('robot_description', 'std_msgs/msg/String',
-          'As robot_state_publisher publishes it, transient local; not where a parameter gives it'),
+          'As robot_state_publisher publishes it, transient local; not where a parameter '
+          'gives it'),
 )
 
 PUBLISHED = (
