@@ -1,6 +1,7 @@
 """The page as a file: complete, self-contained, the numbers of the report, no name believed."""
 
 import base64
+from functools import cache
 import hashlib
 from html.parser import HTMLParser
 import re
@@ -77,14 +78,19 @@ class Reader(HTMLParser):
         return ' '.join(' '.join(self.text).replace('\u00a0', ' ').split())
 
 
+@cache
+def reading(report):
+    """Return what is on the page of a report, by the function that makes the report."""
+    return Reader(page(report()))
+
+
 def plain(cell):
     return cell.replace('\u00a0', ' ')
 
 
 @pytest.mark.parametrize('report', REPORTS.values(), ids=REPORTS)
 def test_every_element_is_closed_and_every_table_is_complete(report):
-    report = report()
-    seen = Reader(page(report))
+    seen, report = reading(report), report()
     assert [row[0] for row in seen.tables['links'][1:]] == [link.name for link in report.links]
     if report.joints:
         assert [row[0] for row in seen.tables['joints'][1:]] == [
@@ -101,7 +107,7 @@ def test_every_element_is_closed_and_every_table_is_complete(report):
 
 @pytest.mark.parametrize('report', REPORTS.values(), ids=REPORTS)
 def test_the_page_refers_to_nothing_outside(report):
-    seen = Reader(page(report()))
+    seen = reading(report)
     for tag, attributes in seen.elements:
         assert tag not in ('link', 'img', 'iframe', 'object', 'embed', 'base', 'form', 'video')
         for name in ASKING & set(attributes):
@@ -115,7 +121,7 @@ def test_the_page_refers_to_nothing_outside(report):
 
 @pytest.mark.parametrize('report', REPORTS.values(), ids=REPORTS)
 def test_the_policy_allows_these_scripts_and_no_network(report):
-    seen = Reader(page(report()))
+    seen = reading(report)
     policy = next(attributes['content'] for tag, attributes in seen.elements
                   if attributes.get('http-equiv') == 'Content-Security-Policy')
     rules = dict(rule.split(' ', 1) for rule in policy.split('; '))
@@ -136,7 +142,7 @@ def test_plotly_is_there_once_and_only_where_something_is_drawn():
 
 def test_the_table_of_joints_says_what_the_report_says():
     report = arm7_report()
-    rows = Reader(page(report)).tables['joints'][1:]
+    rows = reading(arm7_report).tables['joints'][1:]
     for joint, row in zip(report.joints, rows, strict=True):
         kind, reach, worst, limit, share, left = (plain(cell) for cell in row[1:7])
         assert kind.startswith(joint.kind)
@@ -154,7 +160,7 @@ def test_the_table_of_joints_says_what_the_report_says():
 
 def test_the_tables_of_links_and_bodies_say_what_the_report_says():
     report = arm7_report()
-    seen = Reader(page(report))
+    seen = reading(arm7_report)
     for link, row in zip(report.links, seen.tables['links'][1:], strict=True):
         assert row[1] == (number(link.mass) if link.has_inertial else '0')
         assert row[-1] == (link.carrier or 'stands on the base')
@@ -165,14 +171,14 @@ def test_the_tables_of_links_and_bodies_say_what_the_report_says():
 
 def test_a_link_that_cannot_exist_says_why():
     report = refused_report()
-    row = next(row for row in Reader(page(report)).tables['links'] if row[0] == 'upper')
+    row = next(row for row in reading(refused_report).tables['links'] if row[0] == 'upper')
     why = next(link.violations for link in report.links if link.name == 'upper')
     assert why and row[4] == 'no: ' + '; '.join(why)
 
 
 def test_the_first_screen_has_the_numbers_that_matter_most():
     report = weak_report()
-    words = Reader(page(report)).words
+    words = reading(weak_report).words
     worst = max((joint for joint in report.joints if joint.gravity is not None),
                 key=lambda joint: joint.gravity.share)
     for said in (f'mass {number(report.total_mass)} kg',
@@ -186,8 +192,7 @@ def test_the_first_screen_has_the_numbers_that_matter_most():
 
 @pytest.mark.parametrize('report', [weak_report, refused_report])
 def test_findings_come_first_and_whole(report):
-    report = report()
-    seen = Reader(page(report))
+    seen, report = reading(report), report()
     assert report.findings
     articles = [attributes['class'] for tag, attributes in seen.elements if tag == 'article']
     found = [f'finding {finding.severity}' for finding in report.findings]
@@ -202,16 +207,14 @@ def test_findings_come_first_and_whole(report):
 
 def test_a_refused_robot_is_called_so_with_every_reason():
     report = refused_report()
-    words = Reader(page(report)).words.lower()
+    words = reading(refused_report).words.lower()
     assert report.refusals
     assert 'refused' in words and all(reason.lower() in words for reason in report.refusals)
 
 
 def test_names_that_are_attacks_stay_names():
-    markup = page(hostile_report())
-    seen = Reader(markup)
+    seen, safe = reading(hostile_report), reading(arm7_report)
     _, names = hostile_urdf()
-    safe = Reader(page(arm7_report()))
     # The same elements as with harmless names: nothing of a name has become one.
     tags = sorted(tag for tag, _ in seen.elements if tag != 'wbr')
     assert tags == sorted(tag for tag, _ in safe.elements if tag != 'wbr')
