@@ -109,7 +109,8 @@ def test_the_picture_is_not_blank_light_and_dark(tab, pages, tmp_path):
     shades = {}
     for scheme in ('light', 'dark'):
         tab.scheme(scheme)
-        tab.evaluate('document.getElementById("arm-section").scrollIntoView()')
+        tab.evaluate("document.getElementById('arm-section').scrollIntoView("
+                     "{behavior: 'instant'})")
         tab.settle()
         tab.screenshot(tmp_path / 'page.png')
         picture = imread(tmp_path / 'page.png')[..., :3]
