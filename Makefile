@@ -2,7 +2,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help demo report test bench fuzz soak lint build shell lock clean
+.PHONY: help demo report test bench fuzz soak pictures lint build shell lock clean
 
 # ROBOT, VIEW and PYTHON reach the scripts through the environment.
 
@@ -26,6 +26,9 @@ fuzz: ## 100 000 broken descriptions and joint states; ARGS='...': see python -m
 
 soak: ## The simulated arm for 10 minutes, faults at random; ARGS='...': see python -m soak -h
 	@bash scripts/soak.sh $(ARGS)
+
+pictures: ## Draw the pictures of the documents; ARGS='...': only some, see scripts/make_pictures.py
+	@bash scripts/pictures.sh $(ARGS)
 
 lint: ## ruff and mypy
 	@bash scripts/lint.sh

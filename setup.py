@@ -24,7 +24,8 @@ setup(
         (f'share/{package_name}/launch', files('launch', '*.launch.py')),
         (f'share/{package_name}/config', files('config', '*.yaml') + files('config', '*.xml')
          + files('config', '*.rviz')),
-        (f'share/{package_name}/config/robots', files('config/robots', '*.urdf')),
+        (f'share/{package_name}/config/robots',
+         files('config/robots', '*.urdf') + files('config/robots', '*.yaml')),
     ],
     install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'scipy', 'yourdfpy'],
     extras_require={

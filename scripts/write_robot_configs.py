@@ -19,10 +19,9 @@ import sys
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / 'test')]
 
+from dynamics_node import RobotModel  # noqa: E402
 import numpy as np  # noqa: E402
 from support.robots import ARM7, public_robot  # noqa: E402
-
-from dynamics_node import RobotModel  # noqa: E402
 
 FOLDER = ROOT / 'config' / 'robots'
 SAMPLES, SEED = 20_000, 7
@@ -31,8 +30,9 @@ MARGIN, LEAST = 1.25, 0.05
 
 COMPENSATES = ('THE REAL ARM COMPENSATES GRAVITY ITSELF: never enable the output there, it would',
                'be pushed up (docs/arms.md). Use the services and ~/gravity_torque.')
-UNKNOWN = ('Whether the real arm compensates gravity below its effort interface was not found out:',
-           'command zero effort and let it go gently before you enable anything (docs/arms.md).')
+UNKNOWN = ('Whether the real arm compensates gravity below its effort interface was not found',
+           'out: command zero effort and let it go gently before you enable anything',
+           '(docs/arms.md).')
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,8 @@
 """
 Write into docs/tutorial.md what its commands print now.
 
-It runs the whole page: two programs and a Python session. After a change of the page or of what the
-node says, in `make shell`:
+It runs the whole page: two programs and a Python session. After a change of the page or of what
+the node says, in `make shell`:
 
     python scripts/write_tutorial.py
 

@@ -18,7 +18,8 @@ from reference import graph, interfaces, page  # noqa: E402
 
 NAME = '/dynamics_node'
 KINDS = {ParameterType.PARAMETER_BOOL: 'bool', ParameterType.PARAMETER_DOUBLE: 'double',
-         ParameterType.PARAMETER_STRING: 'string', ParameterType.PARAMETER_DOUBLE_ARRAY: 'double[]',
+         ParameterType.PARAMETER_STRING: 'string',
+         ParameterType.PARAMETER_DOUBLE_ARRAY: 'double[]',
          ParameterType.PARAMETER_STRING_ARRAY: 'string[]'}
 
 
@@ -118,6 +119,12 @@ def test_every_interface_file_is_on_it_with_every_field():
         assert len(fields) == section.count('\n| `')
         for item in fields:
             assert item.words, f'{path.name}: {item.name} has no comment'
+
+
+def test_every_program_that_is_installed_is_on_it():
+    installed = re.findall(r"'(\w+) = dynamics_node", (ROOT / 'setup.py').read_text())
+    assert {plain(cells[0]).split()[3] for cells in rows('Programs and launch files')} == set(
+        installed)
 
 
 def test_the_service_table_is_that_of_the_interfaces():

@@ -6,10 +6,9 @@ from pathlib import Path
 # Before mujoco is imported: it chooses its OpenGL when it is.
 os.environ.setdefault('MUJOCO_GL', 'egl')
 
-import mujoco  # noqa: E402
-import numpy as np  # noqa: E402
-
-from dynamics_node.ros.demo.robot_text import mujoco_text  # noqa: E402
+from dynamics_node.ros.demo.robot_text import mujoco_text
+import mujoco
+import numpy as np
 
 # Rendered so much larger and averaged: the cut-out has smooth edges.
 OVERSAMPLING = 3
@@ -132,7 +131,7 @@ def _furnish(spec):
     light = spec.worldbody.add_light()
     light.pos, light.dir = [1.0, -2.0, 3.0], [-0.3, 0.6, -1.0]
     light.type = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
-    light.diffuse, light.castshadow = [0.5, 0.5, 0.5], True
+    light.diffuse, light.castshadow = [0.5, 0.5, 0.5], False
     plate = spec.worldbody.add_geom()
     plate.type = mujoco.mjtGeom.mjGEOM_CYLINDER
     plate.size = [PLATE_RADIUS, PLATE_HEIGHT / 2, 0.0]

@@ -23,7 +23,8 @@ SUBSCRIBED = (
           'By name: any order, parts, other joints besides, no velocity: all fine. Best effort, '
           'the newest wins'),
     Entry('robot_description', 'std_msgs/msg/String',
-          'As robot_state_publisher publishes it, transient local; not where a parameter gives it'),
+          'As robot_state_publisher publishes it, transient local; not where a parameter '
+          'gives it'),
 )
 
 PUBLISHED = (
@@ -35,6 +36,9 @@ PUBLISHED = (
           'For every usable joint state with velocity and effort, while '
           '`publish_external_torque` is true: name, position, velocity, effort = what pushes the '
           'joints from outside'),
+    Entry('~/markers', 'visualization_msgs/msg/MarkerArray',
+          'At most 20 times a second, while somebody listens: masses, inertia, gravity and '
+          'torques as a picture ([RViz](rviz.md))'),
     Entry('forward_effort_controller/commands', 'std_msgs/msg/Float64MultiArray',
           'Only while the output is enabled, in the order of `joints`. The parameter '
           '`command_topic` names another one'),

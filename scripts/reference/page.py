@@ -14,44 +14,46 @@ INTERFACES = ROOT / 'dynamics_interfaces'
 
 HEAD = """# Reference
 
-Written by `scripts/write_reference.py` from the parameter table, the interface files and the launch
-files; do not edit by hand. A test compares it with a running node.
+Written by `scripts/write_reference.py` from the parameter table, the interface files and the
+launch files; do not edit by hand. A test compares it with a running node.
 
 Units are SI. Names are relative or private (`~` is the node, `/dynamics_node` by default), so
-namespaces and remapping work. n is the number of joints, in the order of the parameter `joints`.
-A joint that is not in `joints` still carries mass: it stands at its measured position, or at its
-neutral one (zero, or the nearest within the limits) while it was never measured.
+namespaces and remapping work. n is the number of joints, in the order of the parameter
+`joints`. A joint that is not in `joints` still carries mass: it stands at its measured
+position, or at its neutral one (zero, or the nearest within the limits) while it was never
+measured.
 
-[Topics](#topics) · [Services](#services) · [Parameters](#parameters) ·
-[Programs and launch files](#programs-and-launch-files) · [Messages](#messages) ·
-[Service types](#service-types)"""
+[Topics](#topics) · [Services](#services) · [Parameters](#parameters) · [Programs and launch
+files](#programs-and-launch-files) · [Messages](#messages) · [Service types](#service-types)"""
 
-EXTERNAL_TORQUE = """**External torque.** With `publish_external_torque: true`, `~/external_torque` says
-in N m or N what pushes each joint from outside. joint_states needs velocities, and efforts that are
-joint torques with gravity ([whose are](arms.md)); `/diagnostics` says what is missing or can hardly be
-right. An unknown payload or friction counts as a push. States must come at more than 10 Hz, and parts
-of a state count when all have come."""
+EXTERNAL_TORQUE = """**External torque.** With `publish_external_torque: true`,
+`~/external_torque` says in N m or N what pushes each joint from outside. joint_states needs
+velocities, and efforts that are joint torques with gravity ([whose are](arms.md));
+`/diagnostics` says what is missing or can hardly be right. An unknown payload or friction
+counts as a push. States must come at more than 10 Hz, and parts of a state count when all have
+come."""
 
-SERVICES = """All answer `success` and `message`; on failure every array is empty. The empty request `{}`
-asks for the newest measured position, at rest; `position` and `velocity` ask for another state,
-`joint_names` for another order. Matrices are row-major."""
+SERVICES = """All answer `success` and `message`; on failure every array is empty. The empty
+request `{}` asks for the newest measured position, at rest; `position` and `velocity` ask for
+another state, `joint_names` for another order. Matrices are row-major."""
 
-PARAMETERS_TEXT = """A commented file with all of them: [config/dynamics.yaml](../config/dynamics.yaml).
-Wrong values are refused with the reason, at the start and at run time. Read-only ones are set at
-the start."""
+PARAMETERS_TEXT = """A commented file with all of them:
+[config/dynamics.yaml](../config/dynamics.yaml). Wrong values are refused with the reason, at
+the start and at run time. Read-only ones are set at the start."""
 
 PROGRAMS = """| command | what it is |
 |---|---|
 | `ros2 run dynamics_node dynamics_node` | the node |
+| `ros2 run dynamics_node report my_arm.urdf` | what the URDF says, and what is wrong with it |
 | `ros2 run dynamics_node simulated_robot` | an arm in MuJoCo with brakes, to try the node with |
 | `ros2 run dynamics_node demo` | the demo: `make demo` without make |
 
 Where ROS 2 comes from PyPI there is no `ros2` command; `python -m dynamics_node.ros.main`,
-`python -m dynamics_node.ros.demo.simulated_robot` and `python -m dynamics_node.ros.demo.demo` are the
-same programs."""
+`python -m dynamics_node.report`, `python -m dynamics_node.ros.demo.simulated_robot` and
+`python -m dynamics_node.ros.demo.demo` are the same programs."""
 
-OPTIONS = """Both cost latency and processor time. The leaner executor rests on the inside of rclpy
-7.1; where that is different it steps back by itself."""
+OPTIONS = """`--executor rclpy` and `--no-raw-states` cost latency and processor time. The leaner
+executor rests on the inside of rclpy 7.1; where that is different it steps back by itself."""
 
 
 def render():

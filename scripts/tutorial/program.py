@@ -32,7 +32,8 @@ class Program:
             raise ValueError(f'expected a command that begins with python, got {command!r}')
         self._process = subprocess.Popen(
             [sys.executable, *words[1:]], cwd=folder, stdout=subprocess.PIPE, text=True,
-            stderr=subprocess.STDOUT, env={**os.environ, 'PYTHONUNBUFFERED': '1'},
+            stderr=subprocess.STDOUT,
+            env={**os.environ, 'PYTHONUNBUFFERED': '1', 'COLUMNS': '100'},
             start_new_session=True)
         self._lines: queue.Queue[str] = queue.Queue()
         self._reader = threading.Thread(target=self._read, daemon=True)
@@ -82,4 +83,4 @@ class Program:
 
     def _read(self):
         for line in self._process.stdout:
-            self._lines.put(line.rstrip('\n'))
+            self._lines.put(line.rstrip())

@@ -40,7 +40,7 @@ class Session:
             The same with everything that was printed as it was printed now.
 
         """
-        before = os.getcwd()
+        before = Path.cwd()
         os.chdir(ROOT)
         try:
             return [part if isinstance(part, str) else
