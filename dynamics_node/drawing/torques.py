@@ -14,6 +14,8 @@ GRAVITY_TORQUE, EFFORT, JOINTS, TEXTS = 'gravity_torque', 'effort', 'joints', 't
 FULL, LONGEST = 1.5 * math.pi, 1.95 * math.pi
 # Nothing is drawn with no length at all.
 _SHORTEST = 0.01
+# Of the reach: joints nearer to each other than that have texts in lines so much higher each.
+_NEAR, _LINE = 0.08, 1.3
 # Nobody reads more, and what is only rounding is zero.
 _DECIMALS = 3
 # Of the radius of a joint's arcs: where gravity's and the other one are, their widths, and the
@@ -46,6 +48,7 @@ class Torques:
         self._radius = [float(sizes.arcs[row]) for row in rows]
         self._frames = np.array([tree.placement[row, :3, :3] @ frame_around(tree.axis[row])
                                  for row in rows]).reshape(-1, 3, 3)
+        self._lift = _lifts(tree, rows, sizes)
 
     def shapes(self, poses, gravity_torque, effort, limits):
         """
@@ -91,8 +94,7 @@ class Torques:
         for i, value in enumerate(gravity_torque):
             out = -1.4 * self._radius[i]  # where the arcs do not begin
             x, y, z = (p + out * a for p, a in zip(places[i], across[i], strict=True))
-            # Joints of a wrist are at one place: their texts should not be.
-            place = (x, y, z + (i % 3 - 1) * 1.3 * self._sizes.text)
+            place = (x, y, z + self._lift[i])
             found.append(Shape(TEXTS, i, TEXT, self._sizes.text_size, colours.TEXT, place,
                                text=self._text(i, value, limits[i])))
         return found
@@ -116,6 +118,15 @@ class Torques:
         unit = 'N' if self._is_prismatic[i] else 'N m'
         part = '' if math.isnan(limit) else f' ({100.0 * abs(value) / limit:.0f} %)'
         return f'{self._names[i]}: {round(value, _DECIMALS) + 0.0:.3g} {unit}{part}'
+
+
+def _lifts(tree, rows, sizes):
+    # Joints of a wrist are nearly at one place: each one's text is above that of the one before.
+    lines = np.zeros(len(tree.parent) + 1)  # the last one is the base
+    for k, parent in enumerate(tree.parent):
+        if np.linalg.norm(tree.placement[k, :3, 3]) < _NEAR * sizes.reach and parent >= 0:
+            lines[k] = lines[parent] + 1
+    return [float(lines[row] * _LINE * sizes.text) for row in rows]
 
 
 def _arc(at, load, radius):

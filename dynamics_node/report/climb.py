@@ -9,8 +9,10 @@ from ..model.tree import PRISMATIC
 # Sweeps over all coordinates, and the gain, relative to the torque, at which one is the last.
 _MOST_SWEEPS = 400
 _GAIN = 1e-11
-# So many of the climbing positions go on after the first sweeps.
-_FIRST_SWEEPS, _SURVIVORS = 3, 4
+# So many of the climbing positions go on after the first, the second and the third sweep.
+_SURVIVORS = (10, 6, 4)
+# Where to look beside the place itself, along a coordinate that turns, rad.
+_THIRDS = np.array([0.0, math.tau / 3.0, 2.0 * math.tau / 3.0])
 # How much further to go in the direction in which a whole sweep went.
 _STRIDES = np.array([1.0, 3.0, 10.0, 30.0, 100.0])
 # Positions along a coordinate that other joints mimic, where G is no plain sine; and how often
@@ -76,11 +78,12 @@ class Climber:
             before, start = value.max(), q.copy()
             for coordinate in coordinates:
                 self._set_to_best(joint, coordinate, q, sign, value)
+            value = sign * self._torque(joint, q)
             self._stride(joint, coordinates, start, q, sign, value)
             if value.max() - before <= _GAIN * max(abs(before), 1e-300) and sweep > 1:
                 break
-            if sweep + 1 == _FIRST_SWEEPS:
-                best = np.argsort(-value)[:_SURVIVORS]
+            if sweep < len(_SURVIVORS):
+                best = np.argsort(-value, kind='stable')[:_SURVIVORS[sweep]]
                 q, sign, value = q[best], sign[best], value[best]
         top = int(np.argmax(value))
         return q[top], float(sign[top] * value[top])
@@ -91,24 +94,24 @@ class Climber:
     def _set_to_best(self, joint, coordinate, q, sign, value):
         # In place.
         if not self._is_plain[coordinate]:
-            best = self._by_search(joint, coordinate, q, sign)
+            best, new = self._by_search(joint, coordinate, q, sign)
         elif self._slides[coordinate]:
-            best = self._better_end(joint, coordinate, q, sign)
+            best, new = self._better_end(joint, coordinate, q, sign)
         else:
-            best = self._by_sine(joint, coordinate, q, sign)
-        moved = q.copy()
-        moved[:, coordinate] = best
-        new = sign * self._torque(joint, moved)
+            best, new = self._by_sine(joint, coordinate, q, sign, value)
         better = new > value
         q[better, coordinate] = best[better]
         value[better] = new[better]
 
-    def _by_sine(self, joint, coordinate, q, sign):
-        angles = np.array([0.0, math.tau / 3.0, 2.0 * math.tau / 3.0])
-        at = self._along(joint, coordinate, q, angles) * sign
-        # The discrete Fourier transform of three values.
-        cosine = (2.0 / 3.0) * (at * np.cos(angles)[:, None]).sum(axis=0)
-        sine = (2.0 / 3.0) * (at * np.sin(angles)[:, None]).sum(axis=0)
+    def _by_sine(self, joint, coordinate, q, sign, value):
+        # One third and two thirds of a turn from here: with the value here, a discrete Fourier
+        # transform.
+        angles = q[:, coordinate] + _THIRDS[:, None]
+        at = np.concatenate((value[None],
+                             self._along(joint, coordinate, q, angles[1:]) * sign))
+        mean = at.mean(axis=0)
+        cosine = (2.0 / 3.0) * (at * np.cos(angles)).sum(axis=0)
+        sine = (2.0 / 3.0) * (at * np.sin(angles)).sum(axis=0)
         lower, upper = self._ranges[coordinate]
         top = np.arctan2(sine, cosine)
         # Of all turns the one nearest to the middle.
@@ -117,12 +120,13 @@ class Climber:
         ends = np.where(
             cosine * math.cos(lower) + sine * math.sin(lower)
             > cosine * math.cos(upper) + sine * math.sin(upper), lower, upper)
-        return np.where((top >= lower) & (top <= upper), top, ends)
+        best = np.where((top >= lower) & (top <= upper), top, ends)
+        return best, mean + cosine * np.cos(best) + sine * np.sin(best)
 
     def _better_end(self, joint, coordinate, q, sign):
         ends = self._ranges[coordinate]
         at = self._along(joint, coordinate, q, ends) * sign
-        return np.where(at[0] > at[1], *ends)
+        return np.where(at[0] > at[1], *ends), at.max(axis=0)
 
     def _by_search(self, joint, coordinate, q, sign):
         lower, upper = (np.full(len(q), end) for end in self._ranges[coordinate])
@@ -134,7 +138,7 @@ class Climber:
             columns = np.arange(len(q))
             lower = places[np.maximum(best - 1, 0), columns]
             upper = places[np.minimum(best + 1, _GRID - 1), columns]
-        return places[best, columns]
+        return places[best, columns], at[best, columns]
 
     def _along(self, joint, coordinate, q, places):
         # The joint's torque with one coordinate set: shape (places, B).

@@ -69,7 +69,8 @@ def _finding(finding):
                      f'{", ".join(span(name) for name in others)}</details>')
     said = [(label, sentence) for label, sentence in
             (('effect', finding.effect), ('what to do', finding.advice)) if sentence]
-    details = ''.join(f'<dt>{label}</dt><dd>{text(_sentence(sentence))}</dd>' for label, sentence in said)
+    details = ''.join(f'<dt>{label}</dt><dd>{text(_sentence(sentence))}</dd>'
+                      for label, sentence in said)
     return (f'<article class="finding {text(finding.severity)}"><h3>'
             f'<span class="word">{WORDS[finding.severity]}</span>'
             f'<span>{subjects or "the whole robot"}</span>'

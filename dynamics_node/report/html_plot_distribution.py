@@ -1,6 +1,7 @@
 """The plot of how |G_j| is spread over the workspace, a box for every joint."""
 
 import math
+from typing import Any
 
 from .html_escape import plot_text
 from .html_numbers import percent, quantity
@@ -37,7 +38,7 @@ def distribution_figure(joints):
             _hover(joints, everyone, [1.0 for _ in joints])]
     line = {'type': 'line', 'x0': 100, 'x1': 100, 'y0': 0, 'y1': 1, 'yref': 'paper',
             'line': {'color': color('ink'), 'width': 1.5, 'dash': 'dot'}}
-    modes = [
+    modes: list[dict[str, Any]] = [
         {'label': 'share of the limit', 'visible': [True, False, True, False],
          'layout': {'xaxis': axis('% of the effort limit', rangemode='tozero'),
                     'shapes': [line]}},

@@ -38,7 +38,8 @@ def rows(names):
 def axis(title, **more):
     """Return a horizontal or vertical axis of numbers."""
     return {'type': 'linear', 'title': {'text': title, 'font': {'size': 12}},
-            'gridcolor': color('grid'), 'zerolinecolor': color('line'), 'zerolinewidth': 1, 'linecolor': color('line'),
+            'gridcolor': color('grid'), 'zerolinecolor': color('line'), 'zerolinewidth': 1,
+            'linecolor': color('line'),
             'color': color('muted'), 'automargin': True, 'tickfont': {'size': 12}, **more}
 
 

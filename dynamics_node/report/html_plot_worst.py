@@ -1,6 +1,7 @@
 """The plot of the worst gravity torque of every joint against its effort limit."""
 
 import math
+from typing import Any
 
 from .html_escape import plot_text
 from .html_numbers import number, percent, quantity
@@ -37,7 +38,7 @@ def worst_figure(joints):
     torques = [joint.gravity.magnitude for joint in joints]
     limits = [joint.effort for joint in joints]
     hover = [plot_text(_sentence(joint)).replace('\n', '<br>') for joint in joints]
-    bar = {'type': 'bar', 'orientation': 'h', 'y': places, 'hovertext': hover,
+    bar: dict[str, Any] = {'type': 'bar', 'orientation': 'h', 'y': places, 'hovertext': hover,
            'hoverinfo': 'text', 'marker': {'color': [color(tone(share)) for share in shares]},
            'textposition': 'outside', 'cliponaxis': False,
            'textfont': {'size': 12, 'color': color('muted')}}
@@ -55,14 +56,14 @@ def worst_figure(joints):
     torque_axis = axis(_torque_title(joints), range=[0, _torque_end(torques, limits)])
     line = {'type': 'line', 'x0': 100, 'x1': 100, 'y0': 0, 'y1': 1, 'yref': 'paper',
             'line': {'color': color('ink'), 'width': 1.5, 'dash': 'dot'}}
-    modes = [
+    modes: list[dict[str, Any]] = [
         {'label': 'share of the limit', 'visible': [True, False, False],
          'layout': {'xaxis': share_axis, 'shapes': [line]}},
         {'label': 'torque', 'visible': [False, True, True],
          'layout': {'xaxis': torque_axis, 'shapes': []}}]
     # Without a single limit there are no shares to show.
     modes = modes if any(math.isfinite(share) for share in shares) else modes[1:]
-    data = [of_limit, plain, marks]
+    data: list[dict[str, Any]] = [of_limit, plain, marks]
     for trace, is_visible in zip(data, modes[0]['visible'], strict=True):
         trace['visible'] = is_visible
     return {'data': data, 'height': ROW * len(joints) + MARGINS, 'modes': modes,

@@ -93,7 +93,7 @@ def _what_is_written(source, examination, gravity, samples, seed):
 
 def _with_dynamics(report, study, link, point, tell):
     model = study.model
-    link = default_payload_link(model.tree) if link is None else link
+    link = default_payload_link(model.tree, study.description) if link is None else link
     check_link(model.tree.links, link)
     report = replace(report, joint_names=model.joint_names, model=model,
                      bodies=body_entries(model.tree, study.description))

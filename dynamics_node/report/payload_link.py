@@ -8,22 +8,26 @@ import numpy as np
 # beside it is known by its name, too, and may be heavier.
 _LIGHT, _LIGHT_FINGER = 0.05, 0.1
 _FINGER = re.compile(r'finger|jaw|gripper|thumb|claw', re.IGNORECASE)
+_DIGIT = re.compile(r'finger|jaw|thumb|claw', re.IGNORECASE)
 # Names of frames at which tools are meant to be, the best first.
 _TOOLS = (re.compile(r'tcp|tool_?cent', re.IGNORECASE), re.compile(r'tool', re.IGNORECASE),
           re.compile(r'hand|gripper|palm|eef|effector|(^|_)ee($|_)|flange', re.IGNORECASE))
 
 
-def default_payload_link(tree):
+def default_payload_link(tree, description):
     """
     Return the link at the end of the arm: the last one before the fingers of a hand.
 
     The walk along the moving bodies follows the heavier branch and ends where only light ones
-    are left. Of the links of that body it takes one that is called a tool centre, a tool or a
-    hand; of these, and if there are none of all, the last one in the chain of fixed joints.
+    are left. Of the links of that body it takes one in which a chain of fixed joints ends and
+    that is called a tool centre, a tool or a hand; if there is none, one that is called so; and
+    if there is none, the last.
 
     Parameters
     ----------
     tree : KinematicTree
+    description : RobotDescription
+        Of the same robot.
 
     Returns
     -------
@@ -35,10 +39,15 @@ def default_payload_link(tree):
     if body < 0:
         return tree.root
     links = [link for link, frame in tree.links.items() if frame.body == body]
-    for pattern in _TOOLS:
-        named = [link for link in links if pattern.search(link)]
-        if named:
-            return named[-1]
+    # Fingers may be fixed, too.
+    links = [link for link in links if not _DIGIT.search(link)] or links
+    inner = {joint.parent for joint in description.joints
+             if not joint.is_movable and not _DIGIT.search(joint.child)}
+    for choice in ([link for link in links if link not in inner], links):
+        for pattern in _TOOLS:
+            named = [link for link in choice if pattern.search(link)]
+            if named:
+                return named[-1]
     return links[-1]
 
 

@@ -107,6 +107,8 @@ class Study:
         return [self._worst(joint) for joint in range(len(self.model.joint_names))]
 
     def _worst(self, joint):
+        if np.abs(self.torques[:, joint]).max() <= self.rounding:
+            return self.positions[0], 0.0
         position, torque = self.climber.climb(joint, *self.starts(joint))
         return position, torque if abs(torque) > self.rounding else 0.0
 

@@ -65,4 +65,10 @@ def sound_parts(robot):
             element = ElementTree.Element('link', element.attrib)
         names.add(name)
         sound.append(element)
+    children: set = set()
+    for joint in sound.findall('joint'):
+        parent, child = (joint.find(end).get('link') for end in ('parent', 'child'))
+        if parent not in known['link'] or child not in known['link'] or child in children:
+            sound.remove(joint)
+        children.add(child)
     return sound, frozenset(unread)

@@ -144,3 +144,14 @@ def test_only_the_chosen_joints_have_torques_in_their_order():
     shapes = drawn(robot, robot.neutral_position, [1.0, 2.0], None, [10.0, 10.0], chosen)
     texts = [shape.text for (group, _), shape in shapes.items() if group == 'torque_text']
     assert texts == [f'{chosen[0]}: 1 N m (10 %)', f'{chosen[1]}: 2 N m (20 %)']
+
+
+def test_texts_of_joints_at_one_place_are_in_lines():
+    robot = RobotModel.from_urdf(public_robot('panda_description/urdf/panda.urdf'))
+    n = len(robot.joint_names)
+    shapes = drawn(robot, robot.neutral_position, np.ones(n))
+    texts = [shapes['torque_text', i] for i in range(n)]
+    for i, text in enumerate(texts):
+        for other in texts[:i]:
+            apart = np.abs(np.subtract(text.position, other.position))
+            assert apart.max() > 1.2 * text.size[2], (text.text, other.text)

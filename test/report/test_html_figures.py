@@ -9,7 +9,13 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 from support.report_pages import (
-    arm7_report, block_report, pendulum_report, refused_report, unlimited_report, weak_report)
+    arm7_report,
+    block_report,
+    pendulum_report,
+    refused_report,
+    unlimited_report,
+    weak_report,
+)
 
 REPORTS = {'arm7': arm7_report, 'weak': weak_report, 'unlimited': unlimited_report,
            'pendulum': pendulum_report}

@@ -3,7 +3,8 @@
 import math
 
 from dynamics_node.report.html_numbers import count, number, percent, position, quantity, vector
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 
 _RAISED = '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'

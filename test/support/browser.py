@@ -48,6 +48,10 @@ def require_browser():
     """
     path = find_browser()
     if path is None:
+        chosen = os.environ.get('DYNAMICS_NODE_BROWSER')
+        if chosen:
+            pytest.fail(f'DYNAMICS_NODE_BROWSER: expected a browser, got {chosen!r}, which is no '
+                        'program')
         said = ('no browser found: install chromium (apt-get install chromium), or set '
                 'DYNAMICS_NODE_BROWSER to one')
         if os.environ.get('DYNAMICS_NODE_BROWSER_REQUIRED', '') not in ('', '0'):
@@ -94,7 +98,9 @@ class Tab:
     Attributes
     ----------
     requests : list of str
-        Addresses that the page asked for since `open`, with its own.
+        Addresses that the page asked for since `open`, with its own, also in vain.
+    blocked : list of str
+        Those of them that the page's own policy forbade.
     complaints : list of str
         Errors and warnings of its scripts and of the browser.
 
@@ -104,26 +110,37 @@ class Tab:
         self._orders, self._answers = orders, answers
         self._rest, self._number, self._session = b'', 0, None
         self._results, self._loaded = {}, False
-        self.requests, self.complaints = [], []
+        self.requests, self.blocked, self.complaints = [], [], []
+        self._addresses = {}
         target = self.order('Target.createTarget', session=False, url='about:blank')['targetId']
         self._session = self.order('Target.attachToTarget', session=False, targetId=target,
                                    flatten=True)['sessionId']
         for domain in ('Page', 'Runtime', 'Log', 'Network'):
             self.order(f'{domain}.enable')
 
+    def show(self, path):
+        """Open a file unless it is open already."""
+        if self.evaluate('location.href') != path.as_uri():
+            self.open(path)
+
     def open(self, path, width=1280, height=900, scheme='light', scripts=True):
         """Open a file, and wait until it is loaded."""
-        self.order('Emulation.setDeviceMetricsOverride', width=width, height=height,
-                   deviceScaleFactor=1, mobile=False)
+        self.resize(width, height)
         self.order('Emulation.setScriptExecutionDisabled', value=not scripts)
         self.scheme(scheme)
         self.requests.clear()
+        self.blocked.clear()
         self.complaints.clear()
         self._loaded = False
         self.order('Page.navigate', url=path.as_uri())
         deadline = time.monotonic() + PATIENCE
         while not self._loaded:
             self._receive(deadline)
+
+    def resize(self, width, height=900):
+        """Give the window another size, in pixels."""
+        self.order('Emulation.setDeviceMetricsOverride', width=width, height=height,
+                   deviceScaleFactor=1, mobile=False)
 
     def scheme(self, name):
         """Let the system ask for 'light' or 'dark'."""
@@ -136,6 +153,13 @@ class Tab:
                             awaitPromise=True)
         assert 'exceptionDetails' not in answer, answer['exceptionDetails']
         return answer['result'].get('value')
+
+    def wait_for(self, expression):
+        """Wait until a JavaScript expression is true."""
+        deadline = time.monotonic() + PATIENCE
+        while not self.evaluate(expression):
+            assert time.monotonic() < deadline, f'not within {PATIENCE:.0f} s: {expression}'
+            time.sleep(0.02)
 
     def settle(self):
         """Wait until everything that was asked for is drawn."""
@@ -178,7 +202,11 @@ class Tab:
         if event == 'Page.loadEventFired':
             self._loaded = True
         elif event == 'Network.requestWillBeSent':
-            self.requests.append(parameters['request']['url'])
+            address = parameters['request']['url']
+            self.requests.append(address)
+            self._addresses[parameters['requestId']] = address
+        elif event == 'Network.loadingFailed' and parameters.get('blockedReason') == 'csp':
+            self.blocked.append(self._addresses[parameters['requestId']])
         elif event == 'Runtime.exceptionThrown':
             self.complaints.append(json.dumps(parameters['exceptionDetails']))
         elif event == 'Runtime.consoleAPICalled' and parameters['type'] in ('error', 'warning',

@@ -118,8 +118,8 @@ def _grams(case):
             right = f'if it weighed as much as its neighbours, {kilograms(mass)}'
         effect = torque_effect(
             case, {entry.name: changed(case.links[entry.name].inertial, mass=mass)}, right)
-        if effect.share < _MATTERS:
-            continue
+        if effect.share < _MATTERS and not case.body_children[entry.carrier]:
+            continue  # at the end of a chain, propellers and the like may be as light
         hits.append(Hit(
             WARNING, 'grams', entry.name, sentence, short, effect,
             'URDF has kilograms: were grams written as kilograms, or is a digit lost? Weigh it '

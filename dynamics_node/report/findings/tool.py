@@ -34,8 +34,9 @@ def find_missing_tools(case):
             continue  # something that is called a tool weighs something
         shaped = [entry for entry in tools if case.links[entry.name].has_visual]
         is_one_arm = len(_leaves(case)) == 1
-        if not tools and not (is_one_arm and joint.kind != 'prismatic'):
-            continue
+        is_seen = any(case.links[entry.name].has_visual and not entry.mass for entry in frames)
+        if not tools and (is_seen or not is_one_arm):
+            continue  # what is seen without mass is told as that
         found.append(_finding(case, joint, (shaped or tools or entries)[-1], tools, shaped))
     return found
 

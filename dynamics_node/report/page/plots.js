@@ -12,7 +12,9 @@ const plots = (() => {
   // plotly itself only sees that the window changes its size.
   const sizes = new ResizeObserver((entries) => entries.forEach(({ target }) => {
     const { width, height } = target._fullLayout ?? {};
-    const fits = width === target.clientWidth && height === target.clientHeight;
+    // plotly counts parts of pixels.
+    const fits = Math.abs(width - target.clientWidth) < 1
+      && Math.abs(height - target.clientHeight) < 1;
     if (width && target.clientWidth && !fits) Plotly.Plots.resize(target);
   }));
 

@@ -230,8 +230,10 @@ class StopRequest:
             signal.signal(number, self._on_signal)
 
     def _on_signal(self, number: int, frame: Any) -> None:
-        """Remember."""
+        """Remember; a second one, as Ctrl-C and launch send it, must not cut the end short."""
         self.came = True
+        for other in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(other, signal.SIG_IGN)
 
 
 def main(args: list[str] | None = None) -> int:

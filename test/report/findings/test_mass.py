@@ -1,0 +1,120 @@
+"""Masses that are missing, negative or in grams."""
+
+from dynamics_node import RobotModel
+from dynamics_node.report import make_report
+import numpy as np
+import pytest
+from support.arms import arm, changed, G
+from support.robots import ARM7, public_robot
+
+XARM7 = 'xarm_description/urdf/xarm7.urdf'
+
+
+def findings(text, kind, **options):
+    """Return the findings of a kind."""
+    return [finding for finding in make_report(text, samples=500, **options).findings
+            if finding.kind == kind]
+
+
+def test_a_sound_arm_has_no_findings():
+    assert make_report(arm(), samples=500).findings == ()
+
+
+@pytest.mark.parametrize('link, mass', [('link2', 0.007), ('link3', 0.002), ('link1', 0.003)])
+def test_a_link_of_7_g_is_found_and_what_it_hides_is_computed(link, mass):
+    [found] = findings(changed(arm(), link, mass=mass), 'grams')
+    assert (found.severity, found.subjects) == ('warning', (link,))
+    assert f'{1000.0 * mass:g} g' in found.what
+    right = 1000.0 * mass
+    assert f'if it weighed {right:g} kg' in found.effect
+    assert 'instead of' in found.effect or 'next to nothing' in found.effect
+
+
+def test_the_effect_of_7_g_is_that_of_the_robot_with_7_kg():
+    text = changed(arm(), 'link2', mass=0.007)
+    [found] = findings(text, 'grams')
+    before, after = (make_report(changed(text, 'link2', mass=mass), samples=500)
+                     for mass in (0.007, 7.0))
+    joint = next(name for name in after.joint_names if f"'{name}'" in found.effect)
+    said = [next(entry.gravity.magnitude for entry in report.joints if entry.name == joint)
+            for report in (after, before)]
+    assert f'would be {said[0]:.3g} N m instead of {said[1]:.3g} N m' in found.effect
+
+
+@pytest.mark.parametrize('factor', [1.0, 1e-3])
+def test_7_g_in_a_public_arm_are_found_with_and_without_its_inertia(factor):
+    text = public_robot(XARM7).read_text()
+    for link in ('link2', 'link4'):
+        broken = changed(text, link, mass=0.007)
+        if factor != 1.0:
+            broken = changed(broken, link, tensor=1e-6)
+        [found] = findings(broken, 'grams')
+        assert found.subjects == (link,)
+
+
+def test_a_light_link_between_light_ones_is_no_finding():
+    small = tuple(mass / 500.0 for mass in (3.0, 2.5, 2.0, 1.2, 0.8))
+    assert not findings(arm(small), 'grams')
+
+
+@pytest.mark.parametrize('take', ['inertial', 'mass'])
+def test_a_robot_without_any_inertial_is_told_once_and_loudly(take):
+    text = arm()
+    for link in ('link1', 'link2', 'link3', 'link4', 'link5', 'gripper'):
+        text = (changed(text, link, inertial=False) if take == 'inertial'
+                else changed(text, link, mass=0.0, tensor=0.0))
+    report = make_report(text, samples=100)
+    assert [finding.kind for finding in report.findings] == ['no_inertial']
+    [found] = report.findings
+    assert found.severity == 'problem'
+    assert not RobotModel.from_urdf(text).gravity_torque(np.full(5, 0.3)).any()
+    assert ('none of them has an <inertial>' in found.what) == (take == 'inertial')
+
+
+def test_a_shape_without_mass_at_the_end_is_a_warning_with_what_it_could_weigh():
+    text = changed(arm(), 'gripper', inertial=False).replace('gripper', 'lamp')
+    [found] = findings(text, 'shape_without_mass')
+    assert (found.severity, found.subjects) == ('warning', ('lamp',))
+    assert 'no <inertial>' in found.what
+    # 2 kg, the median of the five links, 1.2 m from the second joint.
+    assert "joint 'joint2'" in found.effect and 'if it weighed 2 kg' in found.effect
+    before = make_report(text, samples=500)
+    [joint] = [joint for joint in before.joints if joint.name == 'joint2']
+    added = 2.0 * G * (0.3 + 0.25 + 0.2 + 0.15)
+    assert f'would be {joint.gravity.magnitude + added:.3g} N m' in found.effect
+
+
+def test_a_shape_without_mass_in_the_middle_may_be_in_its_neighbour():
+    cover = ('<link name="cover"><visual><geometry><sphere radius="1"/></geometry></visual></link>'
+             '<joint name="c" type="fixed"><parent link="link2"/><child link="cover"/></joint>')
+    [found] = findings(arm().replace('</robot>', cover + '</robot>'), 'shape_without_mass')
+    assert found.severity == 'note'
+
+
+def test_frames_without_shape_are_no_findings():
+    frames = ('<link name="camera"/><joint name="c" type="fixed"><parent link="link2"/>'
+              '<child link="camera"/></joint>')
+    assert not make_report(arm().replace('</robot>', frames + '</robot>'), samples=100).findings
+
+
+def test_a_joint_that_moves_nothing_is_a_problem():
+    text = changed(changed(arm(), 'gripper', inertial=False), 'link5', inertial=False)
+    [found] = findings(text, 'joint_moves_nothing')
+    assert (found.severity, found.subjects) == ('problem', ('joint5',))
+    report = make_report(text, samples=100)
+    assert not report.conditioning.is_positive_definite
+    assert 'singular_mass_matrix' not in {finding.kind for finding in report.findings}
+
+
+def test_a_negative_mass_is_refused_and_told():
+    report = make_report(changed(arm(), 'link3', mass=-2.0), samples=500)
+    assert report.verdict == 'refused'
+    [found] = [finding for finding in report.findings if finding.kind == 'negative_mass']
+    assert (found.severity, found.subjects) == ('problem', ('link3',))
+    assert '-2 kg' in found.what and 'N m' in found.effect
+    assert 'refused' not in {finding.kind for finding in report.findings}
+
+
+def test_our_own_arm_is_clean():
+    report = make_report(ARM7)
+    assert report.is_clean and report.findings == ()

@@ -1,0 +1,119 @@
+"""Tensors of no real body, and of another one than the link."""
+
+from dynamics_node import RobotModel
+from dynamics_node.inertia import steiner
+from dynamics_node.report import make_report
+import numpy as np
+import pytest
+from support.arms import arm, changed, scaled_tensor
+from support.robots import public_robot
+
+XARM7 = 'xarm_description/urdf/xarm7.urdf'
+
+
+def findings(text, kind):
+    """Return the findings of a kind."""
+    return [finding for finding in make_report(text, samples=300).findings
+            if finding.kind == kind]
+
+
+def diagonal(text, q):
+    """Return the diagonal of D."""
+    return np.diagonal(RobotModel.from_urdf(text).mass_matrix(q))
+
+
+@pytest.mark.parametrize('link, entry', [('link2', 'izz'), ('link3', 'iyy')])
+def test_a_missing_decimal_point_is_found_and_mended(link, entry):
+    text = arm()
+    right = float(text.split(f'name="{link}"')[1].split(f'{entry}="')[1].split('"')[0])
+    [found] = findings(changed(text, link, tensor={entry: 10.0 * right}), 'triangle_inequality')
+    assert (found.severity, found.subjects) == ('problem', (link,))
+    # It passes the positive definite check: the robot is taken, with a warning.
+    assert make_report(changed(text, link, tensor={entry: 10.0 * right}),
+                       samples=100).verdict == 'usable'
+    assert f'{entry}="{right:.6g}" belongs to a real body' in found.advice
+    assert '10 times too large' in found.advice
+    assert 'gravity torques do not change' in found.effect
+
+
+def test_the_effect_of_a_missing_decimal_point_is_that_on_d():
+    text = arm()
+    broken = changed(text, 'link5', tensor={'ixx': 0.05})
+    [found] = findings(broken, 'triangle_inequality')
+    # Joint 5 turns about x, so D_55 has ixx of link 5 and the gripper and nothing else.
+    before, after = diagonal(broken, np.zeros(5))[4], found.effect
+    mended = float(found.advice.split('ixx="')[2].split('"')[0])
+    share = before / diagonal(changed(broken, 'link5', tensor={'ixx': mended}), np.zeros(5))[4]
+    assert "joint 'joint5'" in after
+    said = after.split('up to ')[1]
+    assert said.startswith(f'{share - 1.0:.3g} times more' if share > 11.0
+                           else f'{100.0 * (share - 1.0):.3g} % more')
+
+
+def test_a_public_arm_with_a_missing_decimal_point():
+    text = public_robot(XARM7).read_text()
+    inertia = text.split('<link name="link2"')[1].split('<inertia ')[1].split('/>')[0]
+    izz = float(inertia.split('izz="')[1].split('"')[0])
+    [found] = findings(changed(text, 'link2', tensor={'izz': 10.0 * izz}), 'triangle_inequality')
+    assert found.subjects == ('link2',)
+    assert f'izz="{izz:.6g}" belongs to a real body' in found.advice
+
+
+def test_rounding_is_a_note():
+    # A flat plate is on the edge, and rounded digits go over it.
+    text = changed(arm(), 'link5', tensor={'ixx': 0.02005, 'iyy': 0.01, 'izz': 0.01})
+    [found] = findings(text, 'triangle_inequality')
+    assert found.severity == 'note' and 'rounding' in found.advice
+
+
+def test_what_stands_on_the_base_is_a_note():
+    [found] = findings(changed(arm(), 'base', tensor={'ixx': 5.0}), 'triangle_inequality')
+    assert found.severity == 'note' and 'stands on the base' in found.effect
+
+
+def test_many_are_told_in_one():
+    text = arm()
+    for link in ('link1', 'link2', 'link3', 'link4'):
+        text = changed(text, link, tensor={'izz': 9.0})
+    [found] = findings(text, 'triangle_inequality')
+    assert set(found.subjects) == {'link1', 'link2', 'link3', 'link4'}
+    assert found.what.startswith('4 links have')
+
+
+def test_what_is_not_positive_definite_is_refused_with_its_part_in_d():
+    text = changed(arm(), 'link5', tensor={'ixx': -0.01})
+    report = make_report(text, samples=300)
+    [found] = [finding for finding in report.findings if finding.kind == 'impossible_inertia']
+    assert report.verdict == 'refused' and found.severity == 'problem'
+    assert '-0.01 kg m^2' in found.what and "joint 'joint5'" in found.effect
+    [note] = findings(changed(arm(), 'base', tensor={'ixx': -0.01}), 'impossible_inertia')
+    assert note.severity == 'note'
+
+
+def test_moments_far_too_large_are_found_though_a_body_has_them():
+    [found] = findings(scaled_tensor(arm(), 'link3', 1000.0), 'inertia_too_large')
+    assert (found.severity, found.subjects) == ('warning', ('link3',))
+    assert 'more inertia (D_jj)' in found.effect
+
+
+def test_the_wrist_of_the_public_ur5_is_found():
+    # 0.22 kg m^2 at 1.2 kg: a radius of gyration of 0.42 m in a link of 0.1 m.
+    report = make_report(public_robot('ur_description/urdf/ur5_robot.urdf'), samples=300)
+    [found] = [finding for finding in report.findings if finding.kind == 'inertia_too_large']
+    assert set(found.subjects) == {'wrist_2_link', 'wrist_3_link'}
+
+
+def test_a_tensor_about_the_frame_is_found_where_products_tell():
+    com, mass = np.array([0.1, 0.08, 0.05]), 2.0
+    own = np.diag([0.004, 0.005, 0.006])
+    about_frame = own + steiner(np.zeros((3, 3)), mass, com)
+    names = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
+    for tensor, count in ((about_frame, 1), (own, 0)):
+        entries = dict(zip(names, tensor[np.triu_indices(3)].tolist(), strict=True))
+        text = changed(arm(), 'link3', mass=mass, com=com.tolist(), tensor=entries)
+        found = findings(text, 'tensor_not_about_com')
+        assert len(found) == count
+    text = changed(arm(), 'link3', mass=mass, com=com.tolist(), tensor=dict(
+        zip(names, about_frame[np.triu_indices(3)].tolist(), strict=True)))
+    [found] = findings(text, 'tensor_not_about_com')
+    assert 'more inertia (D_jj) than with the tensor moved' in found.effect

@@ -1,0 +1,44 @@
+"""Which link carries a payload if nobody says it."""
+
+from dynamics_node.model import build_tree
+from dynamics_node.report.payload_link import default_payload_link
+from dynamics_node.urdf import read_urdf
+import pytest
+from support.arms import arm, pendulum
+from support.robots import ARM7, public_robot
+
+
+def end_of(source):
+    """Return the link that carries a payload."""
+    description = read_urdf(source)
+    return default_payload_link(build_tree(description), description)
+
+
+@pytest.mark.parametrize('robot, link', [
+    ('ur_description/urdf/ur5_robot.urdf', 'tool0'),
+    ('ur_description/urdf/ur10_robot.urdf', 'tool0'),
+    ('panda_description/urdf/panda.urdf', 'panda_hand_tcp'),
+    ('xarm_description/urdf/xarm7.urdf', 'link_eef'),
+    ('z1_description/urdf/z1.urdf', 'gripperStator'),
+    ('kinova_description/robots/kinova.urdf', 'j2s6s200_end_effector'),
+    ('tiago_description/robots/tiago_no_hand.urdf', 'wrist_ft_tool_link'),
+    ('g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf', 'left_hand_palm_link'),
+    ('talos_data/robots/talos_left_arm.urdf', 'gripper_left_inner_single_link')])
+def test_public_arms_carry_with_their_tool_and_no_finger(robot, link):
+    assert end_of(public_robot(robot)) == link
+
+
+def test_our_own_arms():
+    assert end_of(ARM7) == 'tool_center'
+    assert end_of(arm()) == 'gripper'
+    assert end_of(pendulum()) == 'rod'
+
+
+def test_a_robot_that_does_not_move_has_its_root():
+    assert end_of('<robot name="a"><link name="stone"/></robot>') == 'stone'
+
+
+def test_a_camera_on_the_hand_is_no_tool():
+    camera = ('<link name="camera"/><joint name="c" type="fixed"><parent link="gripper"/>'
+              '<child link="camera"/></joint></robot>')
+    assert end_of(arm().replace('</robot>', camera)) == 'gripper'

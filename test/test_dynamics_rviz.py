@@ -1,0 +1,82 @@
+"""config/dynamics.rviz: displays that RViz has, topics that the node has, and what is in docs."""
+
+from pathlib import Path
+import re
+
+from dynamics_node import RobotModel
+from dynamics_node.drawing import Picture
+import numpy as np
+import pytest
+from support.robots import ARM7
+import yaml
+
+ROOT = Path(__file__).parents[1]
+CONFIG = yaml.safe_load((ROOT / 'config' / 'dynamics.rviz').read_text())
+MANAGER = CONFIG['Visualization Manager']
+DISPLAYS = {display['Name']: display for display in MANAGER['Displays']}
+DOCUMENT = (ROOT / 'docs' / 'rviz.md').read_text()
+# As the plugins of RViz for ROS 2 (Jazzy) are registered, and as its properties are spelled.
+CLASSES = {'rviz_common/Displays', 'rviz_common/Views'} | {
+    f'rviz_default_plugins/{name}' for name in (
+        'Grid', 'RobotModel', 'MarkerArray', 'TF', 'Orbit', 'Interact', 'MoveCamera',
+        'FocusCamera', 'Measure')}
+QOS = {'Durability Policy': {'System Default', 'Transient Local', 'Volatile'},
+       'History Policy': {'System Default', 'Keep Last', 'Keep All'},
+       'Reliability Policy': {'System Default', 'Reliable', 'Best Effort'}}
+
+
+def every(node, key):
+    """Return all values of a key, however deep."""
+    if isinstance(node, dict):
+        found = [node[key]] if key in node else []
+        return found + [value for child in node.values() for value in every(child, key)]
+    return [value for child in node for value in every(child, key)] if isinstance(
+        node, list) else []
+
+
+def groups():
+    """Return the groups of a picture in which nothing is missing."""
+    robot = RobotModel.from_urdf(re.sub(
+        r'ixx="[^"]*"', 'ixx="9"', ARM7.read_text(), count=3)).with_payload('hand', 1.0)
+    shapes = Picture(robot.tree, robot.joint_names).shapes(
+        robot, robot.neutral_position, np.ones(8), np.ones(8), robot.effort_limits)
+    return {shape.group for shape in shapes}
+
+
+def test_every_class_exists_in_rviz():
+    classes = set(every(CONFIG, 'Class')) - {''}
+    assert classes <= CLASSES
+    assert {'rviz_default_plugins/MarkerArray', 'rviz_default_plugins/RobotModel'} <= classes
+
+
+@pytest.mark.parametrize(('display', 'key', 'topic'), [
+    ('Dynamics', 'Topic', '/dynamics_node/markers'),
+    ('Robot', 'Description Topic', '/robot_description')])
+def test_topics_and_their_quality_of_service(display, key, topic):
+    settings = DISPLAYS[display][key]
+    assert settings['Value'] == topic
+    assert isinstance(settings['Depth'], int) and settings['Depth'] > 0
+    for policy, words in QOS.items():
+        assert settings[policy] in words
+    assert settings['Reliability Policy'] == 'Reliable'
+    latched = settings['Durability Policy'] == 'Transient Local'
+    assert latched == (topic == '/robot_description')
+    code = (ROOT / 'dynamics_node' / 'ros' / 'markers.py').read_text()
+    assert "'~/markers'" in code
+
+
+def test_it_begins_with_what_the_demo_shows():
+    assert MANAGER['Global Options']['Fixed Frame'] == RobotModel.from_urdf(ARM7).tree.root
+    assert DISPLAYS['Dynamics']['Enabled'] and DISPLAYS['Robot']['Enabled']
+    assert not DISPLAYS['TF']['Enabled']
+    assert DISPLAYS['Robot']['Alpha'] < 0.5  # or nobody sees what is inside
+
+
+def test_every_name_space_can_be_switched_and_is_in_the_document():
+    shown = groups()
+    assert set(DISPLAYS['Dynamics']['Namespaces']) == shown
+    assert set(re.findall(r'^\| `(\w+)` \|', DOCUMENT, re.M)) == shown
+
+
+def test_it_is_installed():
+    assert "files('config', '*.rviz')" in (ROOT / 'setup.py').read_text()
