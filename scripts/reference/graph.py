@@ -37,8 +37,8 @@ PUBLISHED = (
           '`publish_external_torque` is true: name, position, velocity, effort = what pushes the '
           'joints from outside'),
     Entry('~/markers', 'visualization_msgs/msg/MarkerArray',
-          'At most 20 times a second, while somebody listens: masses, inertia, gravity and torques '
-          'as a picture ([RViz](rviz.md))'),
+          'At most 20 times a second, while somebody listens: masses, inertia, gravity and '
+          'torques as a picture ([RViz](rviz.md))'),
     Entry('forward_effort_controller/commands', 'std_msgs/msg/Float64MultiArray',
           'Only while the output is enabled, in the order of `joints`. The parameter '
           '`command_topic` names another one'),

@@ -142,7 +142,8 @@ def test_limits_and_neutral_position_come_from_the_urdf():
 
 
 def test_a_missing_file_is_named():
-    with pytest.raises(RobotDescriptionError, match=r"cannot read 'no_such\.urdf'.*looked in .*absolute"):
+    expected = r"cannot read 'no_such\.urdf'.*looked in .*absolute"
+    with pytest.raises(RobotDescriptionError, match=expected):
         RobotModel.from_urdf('no_such.urdf')
 
 
