@@ -26,11 +26,11 @@ def draw(results, path):
         PNG file.
 
     """
-    figure, (single, batch, growth) = pyplot.subplots(1, 3, figsize=(15, 5))
-    _draw_single(results, single)
-    _draw_batch(results, batch)
-    _draw_growth(results, growth)
-    figure.tight_layout()
+    figure = pyplot.figure(figsize=(10, 9), layout='constrained')
+    grid = figure.add_gridspec(2, 2)
+    _draw_single(results, figure.add_subplot(grid[0, :]))
+    _draw_batch(results, figure.add_subplot(grid[1, 0]))
+    _draw_growth(results, figure.add_subplot(grid[1, 1]))
     figure.savefig(path, dpi=110)
     pyplot.close(figure)
 
@@ -41,7 +41,7 @@ def _draw_single(results, axes):
     for k, robot in enumerate(dict.fromkeys(row.robot for row in rows)):
         chosen = [row for row in rows if row.robot == robot]
         # One below the other, so that three robots stay readable.
-        places = [libraries.index(row.library) + 0.2 * (1 - k) for row in chosen]
+        places = [libraries.index(row.library) + 0.3 * (1 - k) for row in chosen]
         _dots(axes, places, [spread_of(row.seconds) for row in chosen], 1e6, f'C{k}', robot)
     axes.set_yticks(range(len(libraries)), libraries)
     axes.set_xlabel('µs per call (some give less, see the table)')
@@ -51,7 +51,7 @@ def _draw_single(results, axes):
 
 def _draw_batch(results, axes):
     rows = results.batch[::-1]
-    labels = [f'{row.library}, {row.cores} core{"" if row.cores == "one" else "s"}'
+    labels = [f'{row.library},\n{row.cores} core{"" if row.cores == "one" else "s"}'
               for row in rows]
     for place, row in enumerate(rows):
         _dots(axes, [place], [spread_of(row.seconds)], 1e6 / results.batch_count,

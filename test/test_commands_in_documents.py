@@ -21,7 +21,8 @@ BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 TOPICS = {entry.name.replace('~', '/dynamics_node')
           for entry in graph.SUBSCRIBED + graph.PUBLISHED}
 # Of other packages, in the versions of Jazzy; their arguments are theirs.
-OTHER_PROGRAMS = {'controller_manager': {'ros2_control_node', 'spawner'},
+OTHER_PROGRAMS = {'plotjuggler': {'plotjuggler'},
+                  'controller_manager': {'ros2_control_node', 'spawner'},
                   'robot_state_publisher': {'robot_state_publisher'},
                   'mass_matrix_client': {'mass_matrix_client'}}
 VERBS = {'service call', 'pkg prefix', 'topic echo', 'topic info', 'param get', 'param set',

@@ -101,7 +101,8 @@ def draw(robot, path):
             (right, payload, 'YlGnBu', (5, 6, 7, 8, 9), 'kg', 'and leaves for a payload')):
         # At the top everything stands on the bearings: no colours for 60 kg there.
         mesh = axis.pcolormesh(reach, height, values, cmap=colors, rasterized=True,
-                               vmin=0.8 * levels[0], vmax=1.35 * levels[-1])
+                               vmin=0.8 * levels[0],
+                               vmax=levels[-1] * (1.35 if axis is right else 1.1))
         lines = axis.contour((reach[1:] + reach[:-1]) / 2, (height[1:] + height[:-1]) / 2, values,
                              levels, colors='#333333', linewidths=0.7)
         axis.clabel(lines, fontsize=7.5)
