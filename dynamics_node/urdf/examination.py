@@ -67,7 +67,8 @@ def sound_parts(robot):
         sound.append(element)
     children: set = set()
     for joint in sound.findall('joint'):
-        parent, child = (joint.find(end).get('link') for end in ('parent', 'child'))
+        parent, child = (end.get('link') for tag in ('parent', 'child')
+                         for end in joint.findall(tag))
         if parent not in known['link'] or child not in known['link'] or child in children:
             sound.remove(joint)
         children.add(child)

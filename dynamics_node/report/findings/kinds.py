@@ -8,7 +8,7 @@ KINDS = {
     'negative_mass': ((PROBLEM,), 'a mass below zero'),
     'impossible_inertia': ((PROBLEM, NOTE), 'a tensor that is not positive definite'),
     'no_inertial': ((PROBLEM,), 'nothing that moves has a mass'),
-    'joint_moves_nothing': ((PROBLEM, WARNING), 'a joint beyond which there is no inertia'),
+    'joint_moves_nothing': ((PROBLEM,), 'a joint beyond which there is no inertia'),
     'shape_without_mass': ((WARNING, NOTE), 'a moving link that can be seen but weighs nothing'),
     'grams': ((WARNING,), 'a link far lighter than its neighbours or than its inertia asks for'),
     'triangle_inequality': ((PROBLEM, NOTE), 'principal moments that no real body has, often a '
