@@ -40,7 +40,7 @@ def parse(arguments=None):
     """
     parser = argparse.ArgumentParser(
         prog='report', epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='What a URDF says about the dynamics of a robot, what is wrong with it, and '
+        description='What a URDF says about the dynamics of a robot, what is wrong with it, and\n'
                     'what that does to the torques. Meshes are never opened.')
     parser.add_argument('robot', metavar='ROBOT.urdf', help='a URDF file; - reads standard input')
     parser.add_argument('--json', action='store_true',

@@ -103,7 +103,7 @@ def _policy(scripts):
 def _navigation(report, is_drawn):
     places = [('findings', 'Findings')]
     if is_drawn:
-        places += [('arm-section', 'The arm'), ('gravity', 'Gravity')]
+        places += [('arm-section', 'The robot'), ('gravity', 'Gravity')]
     if report.joints:
         places.append(('joints', 'Joints'))
     if report.payload is not None:

@@ -7,6 +7,8 @@ from ..model.tree import PRISMATIC
 # A solid ball of aluminium is as heavy as the body it stands for: sizes one can believe.
 BALL_DENSITY = 2700.0  # kg/m³
 
+_FAR = 100.0  # rad or m; some write 1e16 for 'no limit'
+
 
 def scene(model):
     """
@@ -33,15 +35,13 @@ def scene(model):
     tree = model.tree
     lower, upper = slider_ends(model)
     bodies = range(len(tree.body_names))
-    leads = tree.is_independent
-    kind = {int(tree.coordinate[k]): int(tree.kind[k]) for k in bodies if leads[k]}
     efforts = [None if np.isnan(limit) else float(limit) for limit in model.effort_limits]
     return {
         'joints': list(model.joint_names),
         'neutral': model.neutral_position.tolist(),
         'lower': lower.tolist(), 'upper': upper.tolist(),
         'continuous': model.is_continuous.tolist(),
-        'prismatic': [kind[row] == PRISMATIC for row in range(len(model.joint_names))],
+        'prismatic': [kind == PRISMATIC for kind in _kinds(model)],
         'limit': efforts,
         'body': list(tree.body_names),
         'parent': tree.parent.tolist(),
@@ -69,13 +69,16 @@ def slider_ends(model):
     Returns
     -------
     lower, upper : numpy.ndarray, shape (n,)
-        rad or m; half a turn or half a metre from the neutral position where there is no limit.
+        rad or m; half a turn or half a metre from the neutral position where there is no limit,
+        or one so far away that it says nothing.
 
     """
     neutral, limits = model.neutral_position, model.position_limits
-    way = np.where(model.is_continuous, np.pi, 0.5)
-    lower = np.where(np.isfinite(limits[:, 0]), limits[:, 0], neutral - way)
-    upper = np.where(np.isfinite(limits[:, 1]), limits[:, 1], neutral + way)
+    turns = np.array([kind != PRISMATIC for kind in _kinds(model)], dtype=bool)
+    way = np.where(turns, np.pi, 0.5)
+    is_near = np.abs(limits) < _FAR
+    lower = np.where(is_near[:, 0], limits[:, 0], neutral - way)
+    upper = np.where(is_near[:, 1], limits[:, 1], neutral + way)
     return lower, upper
 
 
@@ -113,6 +116,13 @@ def ellipsoid(J):
     moments, directions = np.linalg.eigh(J[:3, :3] - mass * np.outer(com, com))
     # What is a little below zero is rounding of a flat body.
     return directions * np.sqrt(5.0 * np.maximum(moments, 0.0) / mass)
+
+
+def _kinds(model):
+    """Return the kinds of the independent joints, in the order of q."""
+    tree = model.tree
+    kinds = dict(zip(tree.body_names, tree.kind.tolist(), strict=True))
+    return [kinds[name] for name in model.joint_names]
 
 
 def _com(J):

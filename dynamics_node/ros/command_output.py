@@ -136,9 +136,10 @@ class CommandOutput:
 
         """
         notes = list(notes)
-        self.channel.enable(time.monotonic())
         if self._publisher.get_subscription_count() == 0:
+            # Before the output is on: to look through all topics takes time.
             notes.append(unheard(self._node, self._publisher))
+        self.channel.enable(time.monotonic())
         if notes:
             self.logger.warning('; '.join(notes))
         return f'enabled: efforts go to {self.topic}' + ''.join(f', but {n}' for n in notes)

@@ -50,4 +50,3 @@ def _like(node, own, kind, count):
     return sorted(topic for topic, kinds in node.get_topic_names_and_types()
                   if topic != own and kind in kinds and last in topic.rpartition('/')[2]
                   and count(topic))[:MOST]
-

@@ -31,7 +31,7 @@ class Markers:
 
     """
 
-    def __init__(self, node, parameters, channel, on_change):
+    def __init__(self, node, parameters, channel, on_change, clock=time.monotonic):
         """
         Create the publisher.
 
@@ -43,18 +43,20 @@ class Markers:
             Whose command is shown where joint_states has no effort.
         on_change : callable()
             Called when `is_on` has changed.
+        clock : callable() -> float
+            Steady, s.
 
         """
         self.logger = node.get_logger()
         self._parameters, self._channel = parameters, channel
-        self._on_change = on_change
+        self._on_change, self._clock = on_change, clock
         self._publisher = node.create_publisher(MarkerArray, '~/markers', RESULT,
                                                 event_callbacks=NO_EVENTS)
         self._is_wanted = Listened(self._publisher)
-        self._due = Throttle(PERIOD)
+        self._due = Throttle(PERIOD, clock)
         self._view: _View | None = None
         self._steps: Iterator = iter(())
-        self._last = 0.0
+        self._last = float('-inf')
         self.is_on = False
 
     @logged
@@ -92,7 +94,7 @@ class Markers:
             return
         if not self.is_on:
             return
-        before, self._last = self._last, time.monotonic()
+        before, self._last = self._last, self._clock()
         is_pressing = self._last - before < PRESSING
         if not self._go_on(is_pressing) and self._due.is_due():
             self._steps = self._draw(robot, stamp, gravity_torque)

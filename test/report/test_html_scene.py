@@ -45,6 +45,18 @@ def test_the_scene_is_plain_data_of_the_model():
     assert np.all(np.array(told['upper']) >= told['neutral'])
 
 
+def test_a_slider_has_ends_where_the_joint_has_none():
+    text = ARM7.read_text()
+    model = RobotModel.from_urdf(text.replace('upper="2.1"', 'upper="1e16"'))
+    assert (model.position_limits == 1e16).any()
+    told = scene(model)
+    limits, neutral = model.position_limits, model.neutral_position
+    for place, (lower, upper) in enumerate(zip(told['lower'], told['upper'], strict=True)):
+        assert lower == limits[place, 0]
+        far = limits[place, 1] == 1e16
+        assert upper == (neutral[place] + np.pi if far else limits[place, 1])
+
+
 def test_a_stick_goes_to_every_body_and_from_the_base_to_the_first():
     model = RobotModel.from_urdf(ARM7)
     sticks = scene(model)['sticks']

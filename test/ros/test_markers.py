@@ -9,7 +9,7 @@ from builtin_interfaces.msg import Time
 from dynamics_interfaces.srv import GetGravityTorque, SetPayload
 from dynamics_node import RobotModel
 from dynamics_node.ros import marker_writer
-from dynamics_node.ros.markers import Markers, PERIOD
+from dynamics_node.ros.markers import Markers, PERIOD, PRESSING
 from dynamics_node.ros.robot import Robot
 from geometry_msgs.msg import Inertia, Vector3
 import numpy as np
@@ -194,20 +194,21 @@ class Direct:
     """The publisher with a robot, whose listeners and messages are those of the test."""
 
     def __init__(self, client, listeners=1):
-        self.listeners, self.published, self.changes = listeners, [], 0
+        self.listeners, self.published, self.changes, self.time = listeners, [], 0, 0.0
         self.robot = Robot(RobotModel.from_urdf(ARM7), ())
         publisher = types.SimpleNamespace(publish=self.published.append,
                                           get_subscription_count=lambda: self.listeners)
         channel = types.SimpleNamespace(machine=types.SimpleNamespace(is_on=False))
         self.unit = Markers(types.SimpleNamespace(
             get_logger=client.node.get_logger, create_publisher=lambda *_, **__: publisher),
-            {'effort_limits': ()}, channel, self._changed)
+            {'effort_limits': ()}, channel, self._changed, lambda: self.time)
 
     def _changed(self):
         self.changes += 1
 
-    def state(self, stamp=None):
-        """Take a state; return how many messages there are."""
+    def state(self, stamp=None, after=1.0):
+        """Take a state some time, s, after the last; return how many messages there are."""
+        self.time += after
         self.unit.on_state(self.robot, stamp or Time(), self.robot.gravity_torque())
         return len(self.published)
 
@@ -215,19 +216,35 @@ class Direct:
 def test_rare_states_make_a_picture_at_once_and_pressing_ones_in_steps(client):
     direct = Direct(client)
     assert direct.state() == 0 and direct.changes == 1  # from the next one on there are efforts
-    assert direct.state() == 1
-    stamp = Time(sec=7)
-    counts = []
-    end = time.monotonic() + 5.0
-    while len(direct.published) < 2 and time.monotonic() < end:
-        direct.robot.buffer.update(time.monotonic(), list(direct.robot.joint_names), [0.1] * 8)
-        counts.append(direct.state(stamp))
+    assert [direct.state() for _ in range(3)] == [1, 2, 3]
+    stamp, counts = Time(sec=0), []
+    for _ in range(100):
         stamp.sec += 1  # as the next state does it, in the same message
-    assert counts[-1] == 2 and len(counts) >= 3
-    # The stamp is that of the state that the picture shows.
-    picture = marker_writer.deserialize_message(direct.published[-1], MarkerArray)
-    assert {marker.header.stamp.sec for marker in picture.markers} == {
-        7 + len(counts) - 3}
+        counts.append(direct.state(stamp, after=0.002))
+    steps = np.diff([3, *counts])
+    assert set(steps) == {0, 1} and counts[-1] in (6, 7)  # three or four times PERIOD
+    sent = np.flatnonzero(steps)
+    assert np.diff(sent).min() >= PERIOD / 0.002 - 1
+    # The stamp is that of the state that the picture shows, two steps before it goes out.
+    for place, data in zip(sent, direct.published[3:], strict=True):
+        picture = marker_writer.deserialize_message(data, MarkerArray)
+        assert {marker.header.stamp.sec for marker in picture.markers} == {place + 1 - 2}
+
+
+def test_a_picture_that_was_begun_is_dropped_when_nobody_listens_any_more(client):
+    direct = Direct(client)
+    assert [direct.state(), direct.state()] == [0, 1]
+    # The first step of the next one: it would be over after two more.
+    assert direct.state(after=PRESSING / 2) == 1
+    while direct.time < 2.0 + PERIOD:
+        direct.state(after=PRESSING / 2)
+    before = len(direct.published)
+    for is_wanted in (False, True):
+        direct.unit._is_wanted = is_wanted
+        assert direct.state(after=PRESSING / 2) == before
+        assert direct.unit.is_on == is_wanted
+    assert direct.changes == 3
+    assert direct.state(after=PRESSING / 2) == before  # nothing was left over
 
 
 def test_without_its_bytes_rclpy_writes_the_message(client, monkeypatch):
@@ -252,7 +269,6 @@ def test_an_error_in_it_leaves_the_torque_alone(client, capfd):
     assert direct.published == []
     assert 'Traceback' in capfd.readouterr().err
     direct.robot.buffer = buffer
-    time.sleep(1.1 * PERIOD)
     assert direct.state() == 1  # and it goes on
 
 

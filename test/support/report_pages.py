@@ -69,3 +69,9 @@ def block_report():
 def hostile_report():
     """Return that of a robot whose names are attacks."""
     return make_report(hostile_urdf()[0], samples=SAMPLES)
+
+
+def loaded_joints(report):
+    """Return the independent joints in the order of every position."""
+    by_name = {joint.name: joint for joint in report.joints}
+    return [by_name[name] for name in report.joint_names]

@@ -23,7 +23,8 @@ _TOGETHER = {f'test/{name}.py': 'sweep' for name in (
 # What takes longest comes first: begun last, it would keep one worker busy while the others
 # have nothing left. A file that is missing here is no error, it only costs time.
 _FIRST = ('test/test_code_style.py', 'test/benchmarks/test_node_latency.py',
-          'test/ros/demo/test_demo.py', 'test/test_benchmarks.py',
+          'test/ros/demo/test_demo.py', 'test/report/test_html_in_browser.py',
+          'test/test_benchmarks.py',
           'test/dynamics/test_identities.py', 'sweep', 'test/ros/demo/test_simulated_robot.py',
           'test/ros/test_services.py', 'test/dynamics/test_specialised_robots.py',
           'test/dynamics/test_specialisation.py', 'test/kernels/test_jit.py')

@@ -12,8 +12,11 @@ from ..report import Finding
 # than this, kg, too, and what it carries heavier.
 _LIGHTER = 30.0
 _LIGHT = 0.1
-# Radius of gyration, as a share of the robot's reach, that no part of it has.
-_GYRATION = 0.5
+# At the end of a chain a body may be light; so many times lighter is suspicious there, too.
+_LIGHTER_AT_END, _LIGHT_AT_END = 500.0, 0.01
+# Radius of gyration, as a share of the robot's reach, that no light part of it has, and that none
+# has at all.
+_GYRATION, _GYRATION_OF_ALL = 0.5, 1.0
 # What changes no torque by as much is not told.
 _MATTERS = 0.01
 # If grams were written as kilograms, then the mass is between these shares of its neighbours'.
@@ -113,7 +116,7 @@ def _grams(case):
         sentence, short, neighbours = reason
         mass = 1000.0 * entry.mass
         right = f'if it weighed {kilograms(mass)}'
-        if not _PLAUSIBLE[0] * min(neighbours) <= mass <= _PLAUSIBLE[1] * max(neighbours):
+        if not _is_plausible(mass, neighbours):
             mass = math.exp(sum(map(math.log, neighbours)) / len(neighbours))
             right = f'if it weighed as much as its neighbours, {kilograms(mass)}'
         effect = torque_effect(
@@ -128,6 +131,10 @@ def _grams(case):
     return told(hits, lambda count: f'{count} links are far lighter than their neighbours')
 
 
+def _is_plausible(mass, neighbours):
+    return _PLAUSIBLE[0] * min(neighbours) <= mass <= _PLAUSIBLE[1] * max(neighbours)
+
+
 def _too_light(case, entry):
     # A sentence, its numbers, and the masses of the neighbours, kg; None for a likely mass.
     body = case.body_mass[entry.carrier]
@@ -136,18 +143,31 @@ def _too_light(case, entry):
         other.mass for other in case.report.links if other.carrier is None and other.mass > 0.0)
     behind = [case.body_mass[child] for child in case.body_children[entry.carrier]
               if case.body_mass[child] > 0.0]
-    neighbours = [mass for mass in (before, *behind) if mass > 0.0]
-    if entry.mass < 0.5 * body or not neighbours:
+    neighbours = [mass for mass in (before, *behind, body - entry.mass)
+                  if mass > 0.1 * entry.mass]
+    if not neighbours:
         return None
     gyration = math.sqrt(max(entry.principal_moments) / entry.mass) if (
         max(entry.principal_moments) > 0.0) else 0.0
     reach = case.reach
-    if gyration > _GYRATION * reach > 0.0 and entry.mass < 0.1 * min(neighbours):
+    is_most_of_body = entry.mass >= 0.5 * body
+    if entry.mass < 0.1 * max(neighbours) and ((
+            gyration > _GYRATION_OF_ALL * reach > 0.0
+            and _is_plausible(1000.0 * entry.mass, neighbours)) or (
+            is_most_of_body and gyration > _GYRATION * reach > 0.0
+            and entry.mass < 0.1 * min(neighbours))):
         return (f"link '{entry.name}' weighs {kilograms(entry.mass)}, but its moments of inertia "
                 f'are those of a part of {number(gyration)} m radius (sqrt(I/m)) in a robot that '
                 f'reaches {number(reach)} m; its neighbours weigh '
                 f'{kilograms(max(neighbours))}', kilograms(entry.mass), neighbours)
+    if not is_most_of_body:
+        return None
     load = case.mass_behind[entry.carrier]
+    if (not behind and _LIGHTER_AT_END * body < before and entry.mass < _LIGHT_AT_END
+            and _is_plausible(1000.0 * entry.mass, neighbours)):
+        return (f"link '{entry.name}' weighs {kilograms(entry.mass)}, "
+                f'{factor(before / body)} less than what carries it', kilograms(entry.mass),
+                neighbours)
     if (entry.mass < _LIGHT and behind and before > 0.0 and (entry.has_shape or not
                                                              case.any_shapes)
             and _LIGHTER * body < min(before, max(behind)) and load > _LIGHTER * body):

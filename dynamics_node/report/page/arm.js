@@ -320,7 +320,7 @@ const arm = (() => {
       input.value = q;
       const degrees = (q * 180 / Math.PI).toFixed(1).replace(/^-0\.0$/, '0.0');
       position.textContent = robot.prismatic[place] ? `${digits(q)} m`
-        : `${degrees.replace('-', '−')}°`;
+        : `${Math.abs(degrees) < 1e5 ? degrees.replace('-', '−') : digits(Number(degrees))}°`;
       const share = limit > 0 ? Math.abs(effort) / limit : null;
       torque.replaceChildren();
       make('b', torque).textContent = digits(Math.abs(effort) < rounding ? 0 : effort);

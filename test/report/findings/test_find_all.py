@@ -7,14 +7,21 @@ import pytest
 from support.robots import PENDULUM, public_robot, public_robots, random_urdf
 
 # Public robots about which nothing is to be said but notes.
-CLEAN = {'panda.urdf', 'panda_collision.urdf', 'kinova.urdf', 'z1.urdf', 'xarm7.urdf',
-         'so100.urdf', 'so101.urdf', 'solo12.urdf', 'go1.urdf', 'go2.urdf', 'b1-z1.urdf',
+CLEAN = {'panda.urdf', 'kinova.urdf', 'z1.urdf', 'xarm7.urdf',
+         'so100.urdf', 'so101.urdf', 'solo12.urdf', 'go2.urdf', 'b1-z1.urdf',
          'anymal.urdf', 'centauro.urdf', 'tiago_no_hand.urdf', 'ur10_robot.urdf'}
 
 
-@pytest.mark.parametrize('name', public_robots())
+# Each kind of robot once: those that differ in a limit, a box or a hand take long.
+ROBOTS = [name for name in public_robots() if not any(part in name for part in (
+    '_box', '_corrected', 'talos_full', 'tiago_dual', 'tiago.urdf', 'tiago_pro', 'romeo.urdf',
+    'romeo_small', 'classical', 'limited', 'collision', 'icub_reduced', '_right', 'pendulum_',
+    'anymal-kinova', 'b1.urdf', 'go1', 'laikago', 'simple.urdf', 'solo.urdf', 'sake', 'human'))]
+
+
+@pytest.mark.parametrize('name', ROBOTS)
 def test_public_robots_get_few_findings_that_are_whole_sentences(name):
-    report = make_report(public_robot(name), samples=64)
+    report = make_report(public_robot(name), samples=32)
     assert len(report.findings) <= 8
     ranks = [SEVERITIES.index(finding.severity) for finding in report.findings]
     assert ranks == sorted(ranks)
@@ -32,7 +39,7 @@ def test_the_pendulum_of_this_project_is_clean():
     assert make_report(PENDULUM).is_clean
 
 
-@pytest.mark.parametrize('seed', range(12))
+@pytest.mark.parametrize('seed', range(6))
 def test_random_trees_get_a_report(seed):
     report = make_report(random_urdf(seed), samples=64)
     assert report.verdict == 'usable'

@@ -52,6 +52,19 @@ def test_7_g_in_a_public_arm_are_found_with_and_without_its_inertia(factor):
         assert found.subjects == (link,)
 
 
+def test_a_last_link_in_grams_is_found_with_and_without_its_inertia():
+    text = arm(tool=False)
+    for broken in (changed(text, 'link5', mass=0.0008), changed(
+            changed(text, 'link5', mass=0.0008), 'link5', tensor=1e-7)):
+        [found] = findings(broken, 'grams')
+        assert found.subjects == ('link5',) and 'if it weighed 0.8 kg' in found.effect
+
+
+def test_grams_beside_a_gripper_of_kilograms_are_found_by_their_inertia():
+    [found] = findings(changed(arm(), 'link5', mass=0.0008), 'grams')
+    assert found.subjects == ('link5',) and 'sqrt(I/m)' in found.what
+
+
 def test_a_light_link_between_light_ones_is_no_finding():
     small = tuple(mass / 500.0 for mass in (3.0, 2.5, 2.0, 1.2, 0.8))
     assert not findings(arm(small), 'grams')
