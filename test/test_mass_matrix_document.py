@@ -75,7 +75,7 @@ print(json.dumps([names, D.tolist(), refusal]))
     np.testing.assert_allclose(D, ARM.mass_matrix(Q), rtol=0, atol=1e-12)
     assert refusal.startswith('no joint state within')
     assert printed[0] == str(names)
-    shown = np.array(re.findall(r'-?\d+\.\d*', ' '.join(printed[1:])), dtype=float)
+    shown = np.array(re.findall(r'-?\d+\.\d*(?:e[-+]\d+)?', ' '.join(printed[1:])), dtype=float)
     np.testing.assert_allclose(shown.reshape(8, 8), ARM.mass_matrix(np.zeros(8)), atol=1e-4)
 
 
