@@ -28,13 +28,13 @@ def conditioning_entry(study):
     count = min(_MOST_SAMPLES, max(_LEAST_SAMPLES, _WORK // n**3), len(study.positions))
     numbers, is_definite = np.empty(count), True
     for rows in study.batches(n * n, count):
-        values = np.linalg.eigvalsh(model.mass_matrix(study.positions[rows]))
+        values = np.linalg.eigvalsh(np.nan_to_num(model.mass_matrix(study.positions[rows])))
         positive = values[:, 0] > 0.0
         numbers[rows] = np.where(
             positive, values[:, -1] / np.where(positive, values[:, 0], 1.0), np.inf)
         is_definite = is_definite and _has_answer(model, study.positions[rows])
     worst = study.positions[int(np.argmax(numbers))]
-    vector = np.linalg.eigh(model.mass_matrix(worst))[1][:, 0]
+    vector = np.linalg.eigh(np.nan_to_num(model.mass_matrix(worst)))[1][:, 0]
     slides = {int(model.tree.coordinate[body]) for body in np.flatnonzero(
         (model.tree.kind == PRISMATIC) & model.tree.is_independent)}
     return ConditioningEntry(

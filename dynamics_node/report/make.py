@@ -61,6 +61,11 @@ def make_report(source, *, gravity=STANDARD_GRAVITY, samples=SAMPLES, seed=SEED,
     point = _checked_point(point)
     _check_numbers(samples, seed)
     tell = progress or (lambda fraction, what: None)
+    with np.errstate(all='ignore'):  # absurd numbers overflow, and are told as what they are
+        return _made(source, gravity, samples, seed, link, point, tell)
+
+
+def _made(source, gravity, samples, seed, link, point, tell):
     tell(0.0, 'reading')
     examination = examine_urdf(source)
     report = _what_is_written(source, examination, gravity, samples, seed)

@@ -162,8 +162,9 @@ def _mended_effect(case, link, mended):
     if not joints:
         return UNKNOWN
     model = case.study.with_inertials({link: changed(mended, tensor=np.zeros((3, 3)))})
-    share = 1.0 - case.diagonal_of(model)[:, joints] / case.sampled_inertia[:, joints]
-    place = np.unravel_index(np.nanargmax(share), share.shape)
+    share = np.nan_to_num(
+        1.0 - case.diagonal_of(model)[:, joints] / case.sampled_inertia[:, joints])
+    place = np.unravel_index(int(np.argmax(share)), share.shape)
     name = case.study.model.joint_names[joints[place[1]]]
     return Effect(
         f'the tensor is up to {percent(float(share[place]))} of the inertia (D_jj) that joint '
