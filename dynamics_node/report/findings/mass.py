@@ -57,7 +57,10 @@ def _negative(case):
 
 def _moves_nothing(case):
     # Only where a chain ends: a body without mass in the middle of one is how joints with
-    # several axes are written. Mimic joints count with the one that they follow.
+    # several axes are written. Mimic joints count with the one that they follow. Of parts nobody
+    # knows what is behind a joint, nor what a mass weighs that cannot be read.
+    if not case.examination.is_whole:
+        return []
     leaders: dict[str, list] = {}
     for joint in case.report.joints:
         leaders.setdefault(joint.mimics or joint.name, []).append(joint)

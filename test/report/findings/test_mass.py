@@ -119,6 +119,12 @@ def test_a_joint_that_moves_nothing_is_a_problem():
     assert 'singular_mass_matrix' not in {finding.kind for finding in report.findings}
 
 
+@pytest.mark.parametrize('mass', ['1,5', 'inf', '1e308'])
+def test_a_mass_that_cannot_be_read_is_no_joint_that_moves_nothing(mass):
+    text = changed(arm(tool=False), 'link5', mass=77.0).replace('"77.0"', f'"{mass}"')
+    assert [finding.kind for finding in make_report(text, samples=50).findings] == ['refused']
+
+
 def test_a_negative_mass_is_refused_and_told():
     report = make_report(changed(arm(), 'link3', mass=-2.0), samples=500)
     assert report.verdict == 'refused'
