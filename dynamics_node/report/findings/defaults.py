@@ -46,8 +46,8 @@ def _is_placeholder(tensor):
     value = tensor[0, 0]
     if np.any(tensor != value * np.eye(3)):
         return False
-    if value == 0.0:
-        return True
+    if value <= 0.0:
+        return bool(value == 0.0)
     power = math.log10(value)
     return abs(power - round(power)) < 1e-9
 
