@@ -27,10 +27,11 @@ def print_report(report, console=None):
 
 
 class _Console(Console):
-    # rich ends the program with 1 where the reader has read enough; that is no exit code of ours.
+    # rich ends the program with 1 where the reader has read enough, which is no exit code of
+    # ours; it calls this while it handles the BrokenPipeError.
 
     def on_broken_pipe(self):
-        raise  # noqa: PLE0704 - rich calls this while it handles the error
+        raise
 
 
 def _parts(report, width):

@@ -5,14 +5,17 @@ import math
 
 import numpy as np
 
-from .effects import Effect, NOTHING, unit_of, UNKNOWN
+from .effects import Effect, NOTHING, unit_of
 from .hit import Hit, told
 from .kinds import NOTE, WARNING
-from .words import kilograms, number
+from .words import kilograms, listed, number
+from ..report import Finding
 from ..sampling import sample_positions
 
 # Beyond so many rad a joint makes more than two turns; up to so many, they may be degrees.
 _TURNS, _DEGREES = 5.0 * math.pi, 720.0
+# So many joints are told one by one.
+_SHOWN = 4
 # So many times the torque of the whole robot, hung up at its full reach, is no motor of it; or so
 # many times its weight, where a joint slides.
 _TORQUES, _FORCES = 10.0, 100.0
@@ -33,21 +36,20 @@ def _in_degrees(case):
     # One joint of many that turns for ever is often written so.
     if not beyond or 2 * len(beyond) < len(joints):
         return []
-    effect = _radian_effect(case, joints)
-    hits = [Hit(
-        WARNING, 'limits_in_degrees', joint.name,
-        f"joint '{joint.name}' may turn from {number(joint.lower)} to {number(joint.upper)} rad, "
-        f'{number((joint.upper - joint.lower) / math.tau)} turns: these look like degrees',
-        f'{number(joint.lower)} to {number(joint.upper)} rad', effect,
-        f'URDF has radians: lower="{math.radians(joint.lower):.5g}" '
-        f'upper="{math.radians(joint.upper):.5g}"; or make it continuous', joint.upper - joint.lower)
-        for joint in beyond]
-    return told(hits, lambda count: f'{count} joints have limits that look like degrees')
+    shown = [f"'{joint.name}' ({number(joint.lower)} to {number(joint.upper)} rad)"
+             for joint in beyond[:_SHOWN]]
+    first = beyond[0]
+    return [Finding(
+        WARNING, 'limits_in_degrees', tuple(joint.name for joint in beyond),
+        'position limits of many turns, which look like degrees: '
+        f'{listed(shown, len(beyond))}', _radian_effect(case, joints),
+        f"URDF has radians: '{first.name}' lower=\"{math.radians(first.lower):.5g}\" "
+        f'upper="{math.radians(first.upper):.5g}"; or make joints without end continuous')]
 
 
 def _radian_effect(case, joints):
     if case.study is None:
-        return UNKNOWN
+        return ''
     study, ranges = case.study, case.study.ranges.copy()
     for joint in joints:
         index = study.model.joint_names.index(joint.name)
@@ -58,14 +60,13 @@ def _radian_effect(case, joints):
              for before, after in zip(study.worst, meant.worst, strict=True)]
     index = max(range(len(pairs)), key=lambda i: abs(pairs[i][0] - pairs[i][1]))
     before, after = pairs[index]
-    share = abs(after - before) / max(before, study.rounding)
-    if share < NOTHING:
-        return Effect('no largest gravity torque changes if they are degrees; but nothing stops '
-                      'these joints where the real ones end', share)
+    if abs(after - before) <= NOTHING * max(before, after):
+        return ('if they are degrees, no largest gravity torque changes, but nothing stops the '
+                'joints where the real ones end')
     name = study.model.joint_names[index]
     unit = unit_of(case, name)
-    return Effect(f"the largest gravity torque of joint '{name}', {number(before)} {unit}, is at a "
-                  f'position that it never has: {number(after)} {unit} if they are degrees', share)
+    return (f"the largest gravity torque of joint '{name}', {number(before)} {unit}, is at a "
+            f'position that it never has: {number(after)} {unit} if they are degrees')
 
 
 def _without_meaning(case):

@@ -23,7 +23,8 @@ def test_limits_in_degrees_are_found_with_what_they_do():
     assert (found.severity, len(found.subjects)) == ('warning', 5)
     assert '22.9 to 68.8 rad' in found.what and 'upper="1.2"' in found.advice
     right = make_report(arm(limits=limits), samples=300)
-    joint = next(joint for joint in right.joints if f"'{joint.name}'" in found.effect)
+    joint = next(joint for joint in right.joints
+                 if f"of joint '{joint.name}'" in found.effect)
     assert f'{joint.gravity.magnitude:.3g} N m if they are degrees' in found.effect
 
 
