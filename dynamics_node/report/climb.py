@@ -10,7 +10,9 @@ from ..model.tree import PRISMATIC
 _MOST_SWEEPS = 400
 _GAIN = 1e-11
 # So many of the climbing positions go on after the first, the second and the third sweep.
-_SURVIVORS = (10, 6, 4)
+_SURVIVORS = (64, 24, 12)
+# Torques that are equal to this share of them are taken for the same top.
+_SAME_TOP = 1e-9
 # Where to look beside the place itself, along a coordinate that turns, rad.
 _THIRDS = np.array([0.0, math.tau / 3.0, 2.0 * math.tau / 3.0])
 # How much further to go in the direction in which a whole sweep went.
@@ -83,7 +85,7 @@ class Climber:
             if value.max() - before <= _GAIN * max(abs(before), 1e-300) and sweep > 1:
                 break
             if sweep < len(_SURVIVORS):
-                best = np.argsort(-value, kind='stable')[:_SURVIVORS[sweep]]
+                best = _best_apart(value, _SURVIVORS[sweep])
                 q, sign, value = q[best], sign[best], value[best]
         top = int(np.argmax(value))
         return q[top], float(sign[top] * value[top])
@@ -183,3 +185,12 @@ def _related(tree):
             related[here].add(there)
             related[there].add(here)
     return [sorted(coordinates) for coordinates in related]
+
+
+def _best_apart(value, most):
+    # Indices of the largest values, of equal ones one.
+    order = np.argsort(-value, kind='stable')
+    ranked = value[order]
+    is_new = np.ones(len(order), dtype=bool)
+    is_new[1:] = ranked[:-1] - ranked[1:] > _SAME_TOP * abs(ranked[0])
+    return order[is_new][:most]

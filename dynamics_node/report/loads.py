@@ -9,6 +9,8 @@ from .report import GravityLoad
 _LEVELS = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 _BINS = 40
 _CURVE = 121
+# What one kilogram does is only rounding below this share of its weight at the robot's reach.
+_ROUNDING = 1e-10
 
 
 def gravity_load(study, joint, link, point):
@@ -75,7 +77,7 @@ def per_kilogram(model, q, link, point):
     linear = model.jacobian(q, link, point)[..., :3, :]
     torque = -np.einsum('...ij,i->...j', linear, model.gravity)
     scale = np.linalg.norm(model.gravity) * np.abs(linear).max(initial=0.0)
-    torque[np.abs(torque) <= 1e-13 * scale] = 0.0
+    torque[np.abs(torque) <= _ROUNDING * scale] = 0.0
     return torque
 
 

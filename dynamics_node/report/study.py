@@ -13,8 +13,12 @@ from ..urdf import RobotDescription
 
 # States that are asked for at once, in numbers: what fits into a cache.
 _NUMBERS_AT_ONCE = 500_000
-# So many of the samples are climbed from, up and down, for each joint.
-STARTS = 8
+# So many of the samples are climbed from, up and down, for each joint: the best of all, and the
+# best of so many parts of the samples, for the best of all may lie side by side below a lower top.
+# With another inertia the top is seldom elsewhere.
+STARTS, PARTS, PARTS_AGAIN = 8, 128, 32
+# A joint that changes a torque by less than this share of it does not matter there.
+_NOT_MATTERING = 1e-12
 # Torques below this share of the weight of all that moves, at the length of all links in a row.
 _ROUNDING = 1e-13
 
@@ -78,15 +82,17 @@ class Study:
         """Finds this robot's largest gravity torques."""
         return Climber(self.model, self.ranges)
 
-    def starts(self, joint, torques=None):
+    def starts(self, joint, torques=None, parts=PARTS):
         """
-        Return the samples at which a joint's torque is largest and smallest.
+        Return samples at which a joint's torque is largest and smallest, from all over.
 
         Parameters
         ----------
         joint : int
         torques : numpy.ndarray, shape (S, n), optional
             Of another inertia.
+        parts : int
+            From so many parts of the samples.
 
         Returns
         -------
@@ -97,7 +103,9 @@ class Study:
         """
         own = (self.torques if torques is None else torques)[:, joint]
         order = np.argsort(own, kind='stable')
-        low, high = order[:STARTS], order[-STARTS:]
+        pieces = np.array_split(np.arange(len(own)), min(parts, len(own)))
+        low = np.unique([*order[:STARTS], *(piece[own[piece].argmin()] for piece in pieces)])
+        high = np.unique([*order[-STARTS:], *(piece[own[piece].argmax()] for piece in pieces)])
         return (self.positions[np.concatenate((low, high))],
                 np.repeat([-1.0, 1.0], [len(low), len(high)]))
 
@@ -108,9 +116,22 @@ class Study:
 
     def _worst(self, joint):
         if np.abs(self.torques[:, joint]).max() <= self.rounding:
-            return self.positions[0], 0.0
+            return self._readable(self.positions[0], joint, 0.0), 0.0
         position, torque = self.climber.climb(joint, *self.starts(joint))
-        return position, torque if abs(torque) > self.rounding else 0.0
+        torque = torque if abs(torque) > self.rounding else 0.0
+        return self._readable(position, joint, torque), torque
+
+    def _readable(self, position, joint, torque):
+        # Joints that do not matter stand where they are in the middle of things, and not where
+        # the sample happened to have them.
+        position = position.copy()
+        for other, neutral in enumerate(self.model.neutral_position):
+            trial = position.copy()
+            trial[other] = neutral
+            change = self.model.gravity_torque(trial)[joint] - torque
+            if abs(change) <= max(_NOT_MATTERING * abs(torque), self.rounding):
+                position = trial
+        return position
 
     @cached_property
     def rounding(self):
@@ -133,7 +154,7 @@ class Study:
 
         """
         torques = model.gravity_torque(self.positions)
-        starts, sign = self.starts(joint, torques)
+        starts, sign = self.starts(joint, torques, PARTS_AGAIN)
         before = self.worst[joint][0]
         return self.climber.with_model(model).climb(
             joint, np.concatenate((starts, before[None], before[None])),

@@ -10,7 +10,7 @@ import pytest
 from scipy import optimize
 from support.arms import arm, G, pendulum
 from support.pinocchio_oracle import PinocchioOracle
-from support.robots import ARM7, public_robot
+from support.robots import ARM7, public_robot, random_urdf
 
 DOWN = (0.0, 0.0, -9.81)
 UR5 = 'ur_description/urdf/ur5_robot.urdf'
@@ -121,6 +121,16 @@ def test_it_hardly_depends_on_the_seed(robot):
     assert (spread <= 1e-6 * largest.max(axis=0)).all()
     assert (sampled <= largest.min(axis=0) + 1e-9).all()
     assert np.ptp(sampled, axis=0).max() > 1e-3
+
+
+@pytest.mark.parametrize('robot', [27, 36])
+def test_of_several_tops_the_highest_is_found_from_every_seed(robot):
+    # From the best samples alone some seeds ended 0.6 % below the top here.
+    text = random_urdf(robot, joints=8)
+    largest = np.array([[abs(torque) for _, torque in study(text, 2000, seed).worst]
+                        for seed in range(3)])
+    np.testing.assert_allclose(largest, np.broadcast_to(largest.max(axis=0), largest.shape),
+                               rtol=1e-6, atol=1e-9)
 
 
 def test_joints_that_mimic_are_followed():

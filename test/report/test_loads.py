@@ -68,3 +68,12 @@ def test_what_is_only_rounding_is_zero():
         assert (found.worst, found.share, found.sampled) == (0.0, 0.0, 0.0)
         assert set(found.curve_torques) == {0.0} and found.counts[0] == 3000
         assert found.payload_left == math.inf
+
+
+def test_a_mass_that_does_not_turn_a_joint_leaves_no_trillion_of_kilograms():
+    for name in ('anymal_b_simple_description/robots/anymal-kinova.urdf',
+                 'tiago_description/robots/tiago.urdf'):
+        for joint in make_report(public_robot(name), samples=200).joints:
+            if joint.gravity is not None:
+                left = joint.gravity.payload_left
+                assert not 1e6 < left < math.inf, joint.name

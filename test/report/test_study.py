@@ -23,8 +23,18 @@ def test_starts_are_the_samples_where_a_torque_is_largest_and_smallest(study):
     starts, sign = study.starts(1)
     torques = study.model.gravity_torque(starts)[:, 1]
     order = np.sort(study.torques[:, 1])
-    np.testing.assert_allclose(np.sort(torques[sign < 0]), order[:8])
-    np.testing.assert_allclose(np.sort(torques[sign > 0]), order[-8:])
+    np.testing.assert_allclose(np.sort(torques[sign < 0])[:8], order[:8])
+    np.testing.assert_allclose(np.sort(torques[sign > 0])[-8:], order[-8:])
+    # And others from all over, so that not all are below the same top.
+    assert (sign < 0).sum() > 60 and (sign > 0).sum() > 60
+
+
+def test_joints_that_do_not_matter_stand_at_neutral(study):
+    # Joint 1 turns about the vertical and joint 5 about the arm itself.
+    position, torque = study.worst[1]
+    assert position[0] == position[4] == 0.0
+    assert study.model.gravity_torque(position)[1] == pytest.approx(torque, rel=1e-11)
+    assert study.worst[0][1] == 0.0 and not study.worst[0][0].any()
 
 
 def test_another_inertial_is_that_of_another_urdf(study):
