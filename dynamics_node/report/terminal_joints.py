@@ -61,7 +61,10 @@ def payload_lines(report):
     if payload.is_guessed:
         yield Text(f'{place} is a guess, the end of the heaviest chain before its fingers; '
                    '--payload-link LINK chooses another', style='dim')
-    yield _carries(payload, place)
+    if report.moving_mass > 0.0:
+        yield _carries(payload, place)
+    else:
+        yield Text('What it can hold is not known, for nothing that moves has a mass')
     if payload.unlimited_joints:
         yield Text(f'not counted, for they have no effort limit: '
                    f'{", ".join(payload.unlimited_joints)}', style='yellow')

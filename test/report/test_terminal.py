@@ -96,3 +96,11 @@ def test_a_gripper_that_weighs_nothing_is_shown():
 def test_a_guess_is_called_a_guess_with_the_way_to_choose():
     assert '--payload-link LINK' in printed(make_report(arm(), samples=20), 120)
     assert '--payload-link' not in printed(make_report(arm(), samples=20, link='gripper'), 120)
+
+
+def test_a_robot_without_masses_holds_nothing_that_is_known():
+    text = arm()
+    for link in ('link1', 'link2', 'link3', 'link4', 'link5', 'gripper'):
+        text = changed(text, link, inertial=False)
+    said = printed(make_report(text, samples=20), 120)
+    assert 'It can hold' not in said and 'What it can hold is not known' in said

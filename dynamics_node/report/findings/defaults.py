@@ -18,6 +18,8 @@ _LIGHT = 0.01
 _WRONG = 10.0
 # A chain of so many equal links was copied.
 _COPIES = 3
+# Of so many of them it is computed what they do.
+_COPIES_TRIED = 8
 # A link balanced on its joint is told from this share of what moves, and this length, m.
 _HEAVY, _LONG = 0.05, 0.1
 
@@ -73,10 +75,11 @@ def _placeholder(case, entry, inertial):
     has_unit_mass = entry.mass == 1.0
     said = 'no inertia' if value == 0.0 else f'ixx = iyy = izz = {value:g}'
     mass = ' and a mass of exactly 1 kg' if has_unit_mass else ''
+    at = f' at {number(entry.mass)} kg'
     return Hit(
         WARNING if value > 0.0 and (is_far or has_unit_mass) else NOTE, 'placeholder_tensor',
-        entry.name, f"link '{entry.name}' has {said}{mass} at {number(entry.mass)} kg: it looks "
-        'typed by hand', said + mass,
+        entry.name, f"link '{entry.name}' has {said}{mass or at}: it looks typed by hand",
+        said + mass,
         inertia_effect(case, entry.name, changed(inertial, tensor=moment * np.eye(3)),
                        f'as a ball of {number(size)} m'),
         'take mass, centre of mass and tensor from the CAD program, or compute them from the '
@@ -113,10 +116,11 @@ def _copies(case):
         lengths = {round(case.size_without_com(entry.name), 6) for entry in chain}
         if len(lengths) == 1 and not is_placeholder(case.links[chain[0].name].inertial.tensor):
             continue  # equal parts of equal length: a chain of modules
-        link = chain[0].name
-        effect = torque_effect(case, {link: changed(case.links[link].inertial,
-                                                    mass=2.0 * chain[0].mass)},
-                               f"if '{link}' weighed twice as much")
+        # The first one may turn about the vertical: the weightiest of all is told.
+        effect = max((torque_effect(case, {entry.name: changed(
+            case.links[entry.name].inertial, mass=2.0 * entry.mass)},
+            f"if '{entry.name}' weighed twice as much") for entry in chain[:_COPIES_TRIED]),
+            key=lambda effect: np.nan_to_num(effect.share))
         found.append(Finding(
             NOTE if effect.share < _WARNS else WARNING, 'identical_inertials',
             tuple(entry.name for entry in chain),

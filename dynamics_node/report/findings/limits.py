@@ -13,12 +13,16 @@ def find_limits(case):
     """Return what is wrong with limits."""
     joints = [joint for joint in case.report.joints if joint.mimics is None]
     stated = {joint.name: case.joints[joint.name].stated for joint in joints}
-    zero = [joint for joint in joints if stated[joint.name].effort <= 0.0]
-    missing = [joint for joint in joints if math.isnan(joint.effort) and joint not in zero]
+    below = [joint for joint in joints if stated[joint.name].effort < 0.0]
+    zero = [joint for joint in joints if stated[joint.name].effort == 0.0]
+    missing = [joint for joint in joints if math.isnan(joint.effort)
+               and joint not in below and joint not in zero]
+    weighs = bool(case.moved_with_mass)  # or else nobody knows what gravity asks
     still = [joint for joint in joints if math.isnan(joint.velocity)]
     return [*_over(joints, case.study), *_empty_ranges(case, joints), *_efforts(
-        'zero_effort_limit', zero, 'an effort limit of 0'), *_efforts(
-        'no_effort_limit', missing, 'no effort limit'), *_velocities(still),
+        'zero_effort_limit', below, 'an effort limit below zero', weighs), *_efforts(
+        'zero_effort_limit', zero, 'an effort limit of 0', weighs), *_efforts(
+        'no_effort_limit', missing, 'no effort limit', weighs), *_velocities(case, still),
         *_not_looked_at(joints)]
 
 
@@ -36,17 +40,19 @@ def _over(joints, study):
     return told(hits, lambda count: f'gravity alone is above the effort limit of {count} joints')
 
 
-def _efforts(kind, joints, words):
+def _efforts(kind, joints, words, weighs):
     if not joints:
         return []
     known = [joint for joint in joints if joint.gravity is not None]
     effect = ''
     if known:
         most = max(known, key=lambda joint: joint.gravity.magnitude)
-        effect = ('gravity asks nothing of them; ' if most.gravity.magnitude == 0.0 else
+        effect = ('' if not weighs else
+                  'gravity asks nothing of them; ' if most.gravity.magnitude == 0.0 else
                   f'gravity asks up to {number(most.gravity.magnitude)} {most.effort_unit} of '
                   f"'{most.name}'; ")
-    asked = any(joint.gravity is None or joint.gravity.magnitude > 0.0 for joint in joints)
+    asked = not weighs or any(joint.gravity is None or joint.gravity.magnitude > 0.0
+                              for joint in joints)
     return [Finding(
         WARNING if asked else NOTE, kind, tuple(joint.name for joint in joints),
         f'{_counted(joints)} {words}: {names(joint.name for joint in joints)}',
@@ -55,12 +61,17 @@ def _efforts(kind, joints, words):
         'effort_limits')]
 
 
-def _velocities(joints):
+def _velocities(case, joints):
     if not joints:
         return []
+    written = {case.joints[joint.name].stated.velocity for joint in joints}
+    said = ('a velocity limit of 0' if written == {0.0} else
+            'no velocity limit that can be used')
+    if all(math.isnan(value) for value in written):
+        said = 'no velocity limit'
     return [Finding(
         NOTE, 'no_velocity_limit', tuple(joint.name for joint in joints),
-        f'{_counted(joints)} no velocity limit: {names(joint.name for joint in joints)}',
+        f'{_counted(joints)} {said}: {names(joint.name for joint in joints)}',
         'no torque: but a joint that jumps or runs away is not noticed by the node',
         'write <limit velocity="..."/>')]
 

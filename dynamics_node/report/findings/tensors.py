@@ -48,6 +48,7 @@ def find_tensors(case):
                 large.append(_too_large(case, entry, principal, inertial))
             elif _is_about_frame(inertial):
                 shifted.append(_about_frame(case, entry, inertial))
+    large += _with_the_same(case, {hit.subject for hit in large})
     large = [hit for hit in large if not hit.effect.share < _MATTERS]
     shifted = [hit for hit in shifted if not hit.effect.share < _MATTERS]
     return [
@@ -59,6 +60,19 @@ def find_tensors(case):
               'their mass and size'),
         *told(shifted, lambda count: f'{count} links have a tensor that seems to be about the '
               'link frame, not about the centre of mass')]
+
+
+def _with_the_same(case, names):
+    # A larger link whose mass and tensor are those of one that is too small for them.
+    alike = {_key(case.links[name].inertial) for name in names}
+    return [_too_large(case, entry, np.array(entry.principal_moments),
+                       case.links[entry.name].inertial)
+            for entry in case.moved_with_mass if entry.name not in names
+            and _key(case.links[entry.name].inertial) in alike]
+
+
+def _key(inertial):
+    return inertial.mass, *inertial.tensor.ravel().tolist()
 
 
 def _impossible(case, entry, principal, inertial):
@@ -80,14 +94,17 @@ def _impossible(case, entry, principal, inertial):
 def _triangle(case, entry, principal, inertial):
     excess = float(principal[2] / max(principal[0] + principal[1], 1e-300))
     severity = PROBLEM if excess > _ROUNDED else NOTE
-    short = f'{number(excess)} times' if excess < _FLAT else 'two moments of 0'
+    # What is rounding beside the largest moment is shown as nothing.
+    least, middle = (0.0 if abs(moment) < principal[2] / _FLAT else float(moment)
+                     for moment in principal[:2])
+    short = _excess(excess) if excess < _FLAT else 'two moments of 0'
     what = (f"link '{entry.name}': no real body has its inertia: the largest principal moment, "
-            f'{number(principal[2])} kg m^2, is {number(excess)} times the sum of the two others, '
-            f'{number(principal[0])} + {number(principal[1])}')
+            f'{number(principal[2])} kg m^2, is {_excess(excess)} the sum of the two others, '
+            f'{number(least)} + {number(middle)}')
     if excess > _FLAT:
         what = (f"link '{entry.name}': no real body has its inertia: one principal moment is "
-                f'{number(principal[2])} kg m^2, the two others are {number(principal[0])} and '
-                f'{number(principal[1])}')
+                f'{number(principal[2])} kg m^2, the two others are {number(least)} and '
+                f'{number(middle)}')
     if severity == NOTE:
         advice = 'rounding, most likely: write the tensor with more digits'
         mended, with_what = _cut(inertial), 'with the largest moment cut to that sum'
@@ -101,6 +118,13 @@ def _triangle(case, entry, principal, inertial):
             severity = NOTE
     return Hit(severity, 'triangle_inequality', entry.name, what, short, effect, advice,
                min(excess, _FLAT))
+
+
+def _excess(ratio):
+    # 1.0004 times, and not 1 times.
+    if ratio < _ROUNDED:
+        return f'{percent(ratio - 1.0)} more than'
+    return f'{number(ratio)} times'
 
 
 def _proposal(inertial):
@@ -201,7 +225,8 @@ def _too_large(case, entry, principal, inertial):
         f"link '{entry.name}' has {number(principal[2])} kg m^2 at {number(entry.mass)} kg, as if "
         f'its mass were {number(gyration)} m from its centre; as far as joints and centre of mass '
         f'tell it goes {number(case.size(entry.name))} m',
-        f'{number(gyration)} m of {number(case.size(entry.name))} m',
+        f'as if its mass were {number(gyration)} m from its centre, in a link of '
+        f'{number(case.size(entry.name))} m',
         inertia_effect(case, entry.name, ball, f'as a ball of {number(size)} m radius'),
         'URDF has kg m^2: g mm^2 are 1e-9 and kg mm^2 are 1e-6 of it, lb in^2 2.93e-4; look for '
         'a missing decimal point too', gyration / size)

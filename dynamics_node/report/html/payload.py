@@ -26,7 +26,9 @@ def payload_section(report):
              '<code>--payload-link</code> chooses another)' if payload.is_guessed else '')
     facts = [('carried by', span(payload.link) + guess),
              ('at the point', f'{text(vector(payload.point))} m, in the frame of the link')]
-    if not payload.is_moved:
+    if not report.moving_mass > 0.0:
+        facts.append(('at every pose', 'not known, for nothing that moves has a mass'))
+    elif not payload.is_moved:
         facts.append(('at every pose', 'no joint moves this link'))
     else:
         facts += [('at every pose', _held(payload.everywhere, payload.limiting_joint)),

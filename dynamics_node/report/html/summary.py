@@ -67,7 +67,7 @@ def _tiles(report):
         yield _tile('worst gravity torque', number(worst.gravity.magnitude, 3),
                     worst.effort_unit, f'{worst.name}; no joint has an effort limit')
     if report.payload is not None:
-        yield _payload_tile(report.payload)
+        yield _payload_tile(report.payload, report.moving_mass)
     if report.conditioning is not None:
         D = report.conditioning
         yield _tile('condition number of D, median', number(D.median, 3), '',
@@ -79,7 +79,9 @@ def _tiles(report):
                 'problem' if report.counts['problem'] else 'warning' if problems else '')
 
 
-def _payload_tile(payload):
+def _payload_tile(payload, moving_mass):
+    if not moving_mass > 0.0:
+        return _tile('payload at every pose', '–', '', 'not known: nothing that moves has a mass')
     if not payload.is_moved:
         return _tile('payload at every pose', '–', '', f'no joint moves {payload.link}')
     if math.isinf(payload.everywhere):

@@ -41,6 +41,7 @@ def test_no_velocity_limit_is_a_note(velocity):
     [found] = findings(changed(arm(), 'joint4', limit={'velocity': velocity}),
                        'no_velocity_limit')
     assert (found.severity, found.subjects) == ('note', ('joint4',))
+    assert ('a velocity limit of 0' if velocity == 0 else 'no velocity limit') in found.what
 
 
 @pytest.mark.parametrize('lower, upper', [(0, 0), (1, -1), (0.5, 0.5)])
@@ -57,3 +58,16 @@ def test_a_slide_without_limits_stands_still_and_that_is_told():
     assert (found.severity, found.subjects) == ('note', ('joint5',))
     [joint] = [joint for joint in make_report(text, samples=50).joints if joint.name == 'joint5']
     assert joint.range_note and set(joint.gravity.curve_positions) == {0.0}
+
+
+def test_an_effort_limit_below_zero_is_called_so():
+    [found] = findings(changed(arm(), 'joint2', limit={'effort': -50}), 'zero_effort_limit')
+    assert 'below zero' in found.what
+
+
+def test_nobody_knows_what_gravity_asks_of_a_robot_without_masses():
+    text = arm(effort=0)
+    for link in ('link1', 'link2', 'link3', 'link4', 'link5', 'gripper'):
+        text = changed(text, link, inertial=False)
+    [found] = findings(text, 'zero_effort_limit')
+    assert found.severity == 'warning' and 'gravity asks' not in found.effect
