@@ -126,7 +126,7 @@ def _grams(case):
         mass = 1000.0 * entry.mass
         right = f'if it weighed {kilograms(mass)}'
         if not _is_plausible(mass, neighbours) or mass > _LIKELY * max(neighbours):
-            mass = math.exp(sum(map(math.log, neighbours)) / len(neighbours))
+            mass = _mean(neighbours)
             right = f'if it weighed as much as its neighbours, {kilograms(mass)}'
         effect = torque_effect(
             case, {entry.name: changed(case.links[entry.name].inertial, mass=mass)}, right)
@@ -138,6 +138,12 @@ def _grams(case):
             f'or ask the CAD program, and correct <mass value="{number(entry.mass)}"/>',
             max(neighbours) / entry.mass))
     return told(hits, lambda count: f'{count} links are far lighter than their neighbours')
+
+
+def _mean(masses):
+    # Fingers behind a hand do not tell what it weighs.
+    heavy = [mass for mass in masses if mass >= _PLAUSIBLE[0] * max(masses)]
+    return math.exp(sum(map(math.log, heavy)) / len(heavy))
 
 
 def _is_plausible(mass, neighbours):

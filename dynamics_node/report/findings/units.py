@@ -82,7 +82,8 @@ def _without_meaning(case):
         f'in a robot of {kilograms(case.moving_mass)} that reaches {number(case.reach)} m: no '
         'motor of it has that', f'{number(joint.effort)} {joint.effort_unit}', _hides(joint),
         'write what the motor can do behind the gear, <limit effort="..."/>, or tell the node: '
-        'parameter effort_limits', joint.effort / most[joint.effort_unit])
+        'parameter effort_limits',
+        0.0 if joint.gravity is None else joint.gravity.magnitude)
         for joint in joints if 0.0 < most[joint.effort_unit] < joint.effort]
     return told(hits, lambda count: f'{count} joints have an effort limit that no motor of this '
                 'robot has')
@@ -92,4 +93,4 @@ def _hides(joint):
     asked = '' if joint.gravity is None else (
         f'gravity asks at most {number(joint.gravity.magnitude)} {joint.effort_unit} of it; ')
     return Effect(f'{asked}shares and payloads that are computed with this limit mean nothing, '
-                  'and the node clamps no command there', math.nan)
+                  'and the node lets nearly any command through there', math.nan)
