@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 ROOT = Path(__file__).parents[2]
-ALL_THAT_COMPUTES = '''
+ALL_THAT_COMPUTES = """
 import numpy as np
 from dynamics_node import RobotModel, complete_trajectory
 from dynamics_node.kernels import closed_form, warm_up
@@ -42,7 +42,7 @@ model.trajectory_effort([0.0, 1.0, 2.0], np.zeros((3, 8)))
 after = compiled()
 assert after == before, {name: (before[name], count) for name, count in after.items()
                          if count != before[name]}
-'''
+"""
 
 
 def test_nothing_is_compiled_for_a_second_type():
