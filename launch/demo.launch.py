@@ -19,7 +19,7 @@ from ament_index_python.packages import (
     PackageNotFoundError,
 )
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction
+from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction, Shutdown
 from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
@@ -59,7 +59,8 @@ def start(context):
         Node(package='dynamics_node', executable='simulated_robot', name='simulated_robot',
              namespace=namespace, parameters=[{'robot_description_file': robot,
                                                'view': LaunchConfiguration('view')}],
-             output='screen'),
+             # It has said why; the node would only say that nobody publishes a description.
+             output='screen', on_exit=Shutdown(reason='the simulated robot has ended')),
         Node(package='dynamics_node', executable='dynamics_node', name='dynamics_node',
              namespace=namespace, parameters=parameters, output='screen'),
     ]

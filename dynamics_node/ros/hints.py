@@ -131,10 +131,12 @@ def unheard(node, publisher):
                 f'command_topic:={listened[0]}')
     namespace, _, controller = topic.rpartition('/')[0].rpartition('/')
     manager = f' --controller-manager {namespace}/controller_manager' if namespace else ''
-    return ('nobody listens there: look with  ros2 control list_controllers' + manager
-            + f'  and start it with  ros2 control load_controller{manager} --set-state active '
-            f'{controller or "forward_effort_controller"}  or set command_topic to that of '
-            'another effort controller')
+    # Only who listens before the output is on sees the ramp.
+    return ('nobody listens there: call ~/enable with false first, because a controller that '
+            'begins to listen now gets the whole effort at once; then look with  ros2 control '
+            f'list_controllers{manager}  and start it with  ros2 control load_controller{manager}'
+            f' --set-state active {controller or "forward_effort_controller"}  or set '
+            'command_topic to that of another effort controller')
 
 
 def _rule(topic, name, own):
