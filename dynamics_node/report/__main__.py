@@ -31,10 +31,6 @@ def main(arguments=None):
         stream.reconfigure(errors='replace')  # type: ignore[union-attr]
     try:
         return _run(options)
-    except BrokenPipeError:
-        # Somebody has read enough, say head. Python would complain once more when it ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
     except (RobotDescriptionError, ArgumentError, OSError, _UnusableError) as error:
         print(f'error: {_words(error, options)}', file=sys.stderr)
         return UNUSABLE
@@ -50,6 +46,16 @@ def _run(options):
     report = _make(options)
     if options.html is not None:
         _write_html(report, options.html)
+    try:
+        _show(report, options)
+    except BrokenPipeError:
+        # Somebody has read enough, say head; that changes nothing about the robot. Python would
+        # complain once more when it ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return int(options.strict and not report.is_clean)
+
+
+def _show(report, options):
     if options.json:
         from .to_json import to_json
         json.dump(to_json(report), sys.stdout, indent=1, allow_nan=False)
@@ -57,7 +63,6 @@ def _run(options):
     else:
         _terminal().print_report(report)
     sys.stdout.flush()
-    return int(options.strict and not report.is_clean)
 
 
 def _make(options):
@@ -79,11 +84,17 @@ def _make(options):
 def _path(text):
     from pathlib import Path
     path = Path(text)
-    if not path.is_file():
-        what = 'is a folder' if path.is_dir() else 'does not exist'
+    if not text or path.is_dir() or not path.exists():
+        what = ('is no name' if not text else 'is a folder' if path.is_dir() else
+                'does not exist')
         raise _UnusableError(f"expected a URDF file, got '{text}', which {what} (in "
                              f'{Path.cwd()})')
-    return path
+    if path.is_file():
+        return path
+    # A pipe, as of <(xacro arm.urdf.xacro) in a shell. More than anybody takes is not read.
+    from ..urdf.guard import MAX_BYTES
+    with path.open('rb') as stream:
+        return stream.read(MAX_BYTES + 1)
 
 
 def _terminal():

@@ -74,12 +74,28 @@ def joint_entries(description):
 
     """
     movable = [joint for joint in description.joints if joint.is_movable]
-    known = {joint.name for joint in movable}
-    leaders = {joint.name: (joint.mimic.leader if joint.mimic else None, 1.0, 0.0)
-               for joint in movable}
-    if all(joint.mimic is None or joint.mimic.leader in known for joint in movable):
+    by_name = {joint.name: joint for joint in movable}
+    leaders = {joint.name: _as_written(joint) for joint in movable}
+    if all(_mimic_ends(joint, by_name) for joint in movable):
         leaders = resolve_mimic(movable)
     return tuple(_joint(joint, *leaders[joint.name]) for joint in movable)
+
+
+def _as_written(joint):
+    mimic = joint.mimic
+    return (joint.name, 1.0, 0.0) if mimic is None else (
+        mimic.leader, mimic.multiplier, mimic.offset)
+
+
+def _mimic_ends(joint, by_name):
+    # In a refused description joints may mimic each other in a circle, or one that is unknown.
+    seen = set()
+    while joint.mimic is not None:
+        seen.add(joint.name)
+        if joint.mimic.leader in seen or joint.mimic.leader not in by_name:
+            return False
+        joint = by_name[joint.mimic.leader]
+    return True
 
 
 def _link(link, carrier, is_unread):

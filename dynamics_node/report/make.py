@@ -1,6 +1,7 @@
 """From a URDF to its report."""
 
 from dataclasses import replace
+import math
 import os
 
 import numpy as np
@@ -90,15 +91,22 @@ def _what_is_written(source, examination, gravity, samples, seed):
     return Report(
         robot=quoted(examination.description.name)[1:-1], source=_source_name(source),
         root=examination.description.root, gravity=tuple(gravity.tolist()), verdict='usable',
-        refusals=(), total_mass=float(sum(link.mass for link in links)),
-        moving_mass=float(sum(link.mass for link in links if link.carrier)), samples=samples,
+        refusals=(), total_mass=_sum_of_read(links),
+        moving_mass=_sum_of_read(link for link in links if link.carrier), samples=samples,
         seed=seed, joint_names=(), links=links, bodies=(),
         joints=joint_entries(examination.description), findings=())
 
 
+def _sum_of_read(links):
+    # Of a refused robot some masses may have no number.
+    return float(sum(link.mass for link in links if not math.isnan(link.mass)))
+
+
 def _with_dynamics(report, study, link, point, tell):
     model = study.model
-    link = default_payload_link(model.tree, study.description) if link is None else link
+    is_guessed = link is None
+    if link is None:
+        link = default_payload_link(model.tree, study.description)
     check_link(model.tree.links, link)
     report = replace(report, joint_names=model.joint_names, model=model,
                      bodies=body_entries(model.tree, study.description))
@@ -114,7 +122,7 @@ def _with_dynamics(report, study, link, point, tell):
                             gravity=gravity_load(study, i, link, point))
         joints.append(joint)
     tell(0.6, 'payload')
-    payload = payload_entry(study, link, point)
+    payload = replace(payload_entry(study, link, point), is_guessed=is_guessed)
     tell(0.8, 'mass matrix')
     return replace(report, joints=tuple(joints), payload=payload,
                    conditioning=conditioning_entry(study))

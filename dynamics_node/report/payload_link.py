@@ -4,10 +4,13 @@ import re
 
 import numpy as np
 
-# Branches lighter than this share of all that moves are fingers; a finger that has no other
+# Branches lighter than this share of what carries them are fingers; a finger that has no other
 # beside it is known by its name, too, and may be heavier.
 _LIGHT, _LIGHT_FINGER = 0.05, 0.1
-_FINGER = re.compile(r'finger|jaw|gripper|thumb|claw', re.IGNORECASE)
+# A joint of this name moves a finger; a link of this name may be a whole gripper on a wrist.
+_FINGER_JOINT = re.compile(r'finger|jaw|gripper|thumb|claw', re.IGNORECASE)
+# Unless it is a wrist.
+_WRIST = re.compile(r'yaw|pitch|roll|wrist', re.IGNORECASE)
 _DIGIT = re.compile(r'finger|jaw|thumb|claw', re.IGNORECASE)
 # Names of frames at which tools are meant to be, the best first.
 _TOOLS = (re.compile(r'tcp|tool_?cent', re.IGNORECASE), re.compile(r'tool', re.IGNORECASE),
@@ -19,7 +22,7 @@ def default_payload_link(tree, description):
     Return the link at the end of the arm: the last one before the fingers of a hand.
 
     The walk along the moving bodies follows the heavier branch and ends where only light ones
-    are left. Of the links of that body it takes one in which a chain of fixed joints ends and
+    are left, compared with the bodies from the base to there. Of the links of that body it takes one in which a chain of fixed joints ends and
     that is called a tool centre, a tool or a hand; if there is none, one that is called so; and
     if there is none, the last.
 
@@ -35,7 +38,7 @@ def default_payload_link(tree, description):
         The root link if nothing moves.
 
     """
-    body = _last_body(tree)
+    body = _last_body(tree, {joint.name: joint.child for joint in description.joints})
     if body < 0:
         return tree.root
     links = [link for link, frame in tree.links.items() if frame.body == body]
@@ -51,25 +54,29 @@ def default_payload_link(tree, description):
     return links[-1]
 
 
-def _last_body(tree):
+def _last_body(tree, child):
     behind = np.array(tree.inertia[:, 3, 3])
     for body in range(len(tree.parent) - 1, -1, -1):
         if tree.parent[body] >= 0:
             behind[tree.parent[body]] += behind[body]
-    total = float(tree.inertia[:, 3, 3].sum())
-    body = -1
+    body, before = -1, 0.0
     while True:
         children = np.flatnonzero(tree.parent == body)
         if len(children) == 0:
             return body
         heaviest = int(children[np.argmax(behind[children])])
-        if body >= 0 and ((len(children) > 1 and behind[heaviest] < _LIGHT * total)
-                          or _is_finger(tree, heaviest, behind, total)):
+        is_branch = len(children) > 1 and behind[heaviest] < _LIGHT * before
+        # Its own names count: what is fixed to a wrist may be called finger, too. A robot that
+        # weighs nothing has fingers as well.
+        name = tree.body_names[heaviest]
+        is_finger = (behind[heaviest] <= _LIGHT_FINGER * before
+                     and _is_finger(name, child[name]))
+        if body >= 0 and (is_branch or is_finger):
             return body
-        body = heaviest
+        body, before = heaviest, before + float(tree.inertia[heaviest, 3, 3])
 
 
-def _is_finger(tree, body, behind, total):
-    links = [link for link, frame in tree.links.items() if frame.body == body]
-    return bool(behind[body] < _LIGHT_FINGER * total and (
-        _FINGER.search(tree.body_names[body]) or any(map(_FINGER.search, links))))
+def _is_finger(joint, link):
+    if _DIGIT.search(joint) or _DIGIT.search(link):
+        return True
+    return bool(_FINGER_JOINT.search(joint)) and not _WRIST.search(joint)

@@ -208,6 +208,8 @@ class PayloadEntry:
         The limiting joint there.
     unlimited_joints : tuple of str
         Joints that carry the point and have no effort limit: they were not counted.
+    is_guessed : bool
+        Whether nobody said which link carries it, see `default_payload_link`.
 
     """
 
@@ -221,6 +223,7 @@ class PayloadEntry:
     best_position: tuple
     best_joint: str | None
     unlimited_joints: tuple
+    is_guessed: bool = False
 
 
 @dataclass(frozen=True)
@@ -302,7 +305,7 @@ class Report:
     refusals : tuple of str
         Why it is refused.
     total_mass, moving_mass : float
-        kg; of all links, and of what joints move.
+        kg; of all links whose mass could be read, and of those that joints move.
     samples, seed : int
     joint_names : tuple of str
         The n independent joints in the order of every position in here.

@@ -21,9 +21,17 @@ def print_report(report, console=None):
         By default standard output, in colours if that is a terminal and NO_COLOR is not set.
 
     """
-    console = console or Console(highlight=False)
+    console = console or _Console(highlight=False)
     for part in _parts(report, console.width):
         console.print(part)
+
+
+class _Console(Console):
+    # rich ends the program with 1 where the reader has read enough, which is no exit code of
+    # ours; it calls this while it handles the BrokenPipeError.
+
+    def on_broken_pipe(self):
+        raise
 
 
 def _parts(report, width):

@@ -58,6 +58,9 @@ def payload_lines(report):
         place += f' at ({", ".join(f"{value:g}" for value in payload.point)}) m'
     yield Text(f'\n"kg left": a point mass at {place}, in that position, until that joint is at '
                'its limit', style='dim')
+    if payload.is_guessed:
+        yield Text(f'{place} is a guess, the end of the heaviest chain before its fingers; '
+                   '--payload-link LINK chooses another', style='dim')
     yield _carries(payload, place)
     if payload.unlimited_joints:
         yield Text(f'not counted, for they have no effort limit: '

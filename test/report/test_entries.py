@@ -1,6 +1,7 @@
 """The tables of links, bodies and joints."""
 
 from dynamics_node import RobotModel
+from dynamics_node.errors import RobotDescriptionError
 from dynamics_node.report import make_report
 import numpy as np
 import pytest
@@ -71,3 +72,23 @@ def test_mimic_joints_of_a_public_arm_follow_theirs():
     report = make_report(public_robot(KINOVA), samples=20)
     assert set(report.joint_names) == {joint.name for joint in report.joints
                                        if joint.mimics is None}
+
+
+@pytest.mark.parametrize('leaders', [
+    {'joint2': 'joint2'}, {'joint2': 'joint3', 'joint3': 'joint2'},
+    {'joint1': 'joint2', 'joint2': 'joint3', 'joint3': 'joint2'}, {'joint2': 'nobody'}])
+def test_joints_that_mimic_each_other_in_a_circle_are_refused_and_shown(leaders):
+    text = arm()
+    for name, leader in leaders.items():
+        text = text.replace(f'name="{name}" type="revolute">',
+                            f'name="{name}" type="revolute"><mimic joint="{leader}" '
+                            'multiplier="3" offset="0.5"/>')
+    with pytest.raises(RobotDescriptionError):
+        RobotModel.from_urdf(text)
+    report = make_report(text, samples=20)
+    assert report.verdict == 'refused'
+    by_name = {joint.name: joint for joint in report.joints}
+    for name, leader in leaders.items():
+        written = None if leader == name else leader
+        assert (by_name[name].mimics, by_name[name].multiplier, by_name[name].offset) == (
+            written, 3.0, 0.5)

@@ -149,3 +149,30 @@ def test_it_can_be_piped_into_head_and_into_a_file_of_another_encoding():
         f"'{sys.executable}' -m dynamics_node.report '{ARM7}' --json --samples 10 | head -n 1",
         shell=True, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
     assert (whole.stdout, whole.stderr) == ('{\n', '')
+
+
+def shell(command):
+    """Run a line of bash in the checkout."""
+    return subprocess.run(['bash', '-c', command], cwd=ROOT, capture_output=True, text=True,
+                          timeout=120, check=False)
+
+
+@pytest.mark.parametrize('text, options, code', [
+    (WARNED, '--strict --json', 1), (WARNED, '--strict', 1), (WARNED, '', 0),
+    (arm(), '--strict', 0)])
+def test_its_exit_code_is_the_same_where_the_reader_has_read_enough(robot, text, options, code):
+    answer = shell(f"'{sys.executable}' -m dynamics_node.report '{robot(text)}' --samples 20 "
+                   f'{options} | (exec 0<&-; sleep 0.1); echo ${{PIPESTATUS[0]}}')
+    assert (answer.stdout, answer.stderr) == (f'{code}\n', '')
+
+
+def test_it_reads_a_pipe_that_has_a_path(robot):
+    answer = shell(f"'{sys.executable}' -m dynamics_node.report <(cat '{robot(arm())}') "
+                   '--samples 20')
+    assert (answer.returncode, answer.stderr) == (0, '')
+    assert 'arm: usable' in answer.stdout
+
+
+def test_no_name_is_no_robot(capsys):
+    assert main(['']) == 2
+    assert "got '', which is no name" in capsys.readouterr().err

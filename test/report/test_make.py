@@ -74,3 +74,15 @@ def test_a_broken_description_gets_a_report_or_one_clear_error(texts):
             continue
         json.dumps(to_json(report), allow_nan=False)
         assert report.refusals or report.model is not None
+
+
+def test_a_payload_says_whether_its_link_was_guessed():
+    assert make_report(arm(), samples=20).payload.is_guessed
+    assert not make_report(arm(), samples=20, link='gripper').payload.is_guessed
+
+
+def test_what_is_readable_is_summed_up():
+    report = make_report(arm().replace('<mass value="0.7"/>', '<mass value="x"/>'), samples=20)
+    assert report.verdict == 'refused'
+    # The base and the five links, without the gripper.
+    assert report.total_mass == pytest.approx(4.0 + 3.0 + 2.5 + 2.0 + 1.2 + 0.8)

@@ -1,5 +1,7 @@
 """Which link carries a payload if nobody says it."""
 
+from xml.etree import ElementTree
+
 from dynamics_node.model import build_tree
 from dynamics_node.report.payload_link import default_payload_link
 from dynamics_node.urdf import read_urdf
@@ -22,6 +24,15 @@ def end_of(source):
     ('z1_description/urdf/z1.urdf', 'gripperStator'),
     ('kinova_description/robots/kinova.urdf', 'j2s6s200_end_effector'),
     ('tiago_description/robots/tiago_no_hand.urdf', 'wrist_ft_tool_link'),
+    ('baxter_description/urdf/baxter.urdf', 'right_gripper'),
+    ('pr2_description/urdf/pr2.urdf', 'r_gripper_tool_frame'),
+    ('talos_data/robots/talos_full_v2.urdf', 'gripper_left_base_link'),
+    ('tiago_pro_description/robots/tiago_pro.urdf', 'gripper_left_base_link'),
+    ('romeo_description/urdf/romeo_small.urdf', 'l_gripper'),
+    ('anymal_b_simple_description/robots/anymal-kinova.urdf', 'j2s6s200_end_effector'),
+    ('so_arm_description/urdf/so101.urdf', 'gripper_frame_link'),
+    ('alex_description/urdf/alex_nub_hands.urdf', 'LeftGripperYawLink'),
+    ('alex_description/urdf/alex_sake_hands.urdf', 'LeftSakePalmLink'),
     ('g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf', 'left_hand_palm_link'),
     ('talos_data/robots/talos_left_arm.urdf', 'gripper_left_inner_single_link')])
 def test_public_arms_carry_with_their_tool_and_no_finger(robot, link):
@@ -42,3 +53,21 @@ def test_a_camera_on_the_hand_is_no_tool():
     camera = ('<link name="camera"/><joint name="c" type="fixed"><parent link="gripper"/>'
               '<child link="camera"/></joint></robot>')
     assert end_of(arm().replace('</robot>', camera)) == 'gripper'
+
+
+def test_a_weightless_arm_ends_before_its_fingers_too():
+    robot = ElementTree.fromstring(public_robot(
+        'panda_description/urdf/panda.urdf').read_text())
+    for link in robot.findall('link'):
+        for inertial in link.findall('inertial'):
+            link.remove(inertial)
+    assert end_of(ElementTree.tostring(robot, encoding='unicode')) == 'panda_hand_tcp'
+
+
+def test_fingers_that_are_fixed_to_a_wrist_make_it_no_finger():
+    robot = ElementTree.fromstring(public_robot(
+        'panda_description/urdf/panda.urdf').read_text())
+    for joint in robot.findall('joint'):
+        if 'finger' in joint.get('name'):
+            joint.set('type', 'fixed')
+    assert end_of(ElementTree.tostring(robot, encoding='unicode')) == 'panda_hand_tcp'

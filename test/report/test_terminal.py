@@ -91,3 +91,8 @@ def test_a_gripper_that_weighs_nothing_is_shown():
                                samples=50))
     row = next(line for line in text.splitlines() if line.startswith('tool0'))
     assert 'weighs nothing' in row
+
+
+def test_a_guess_is_called_a_guess_with_the_way_to_choose():
+    assert '--payload-link LINK' in printed(make_report(arm(), samples=20), 120)
+    assert '--payload-link' not in printed(make_report(arm(), samples=20, link='gripper'), 120)

@@ -23,8 +23,10 @@ def find_coms(case):
             if other.parent == entry.name)])
         if not (reach > 0.0 and distance > _OF_REACH * reach and distance > _FURTHER * around):
             continue
-        right = com * 1e-3 if 1e-3 * distance < 2.0 * max(around, 1e-3) else com / 10.0
-        said = 'a thousandth of that' if right[0] == com[0] * 1e-3 else 'a tenth of that'
+        # A misplaced decimal point, if that is enough; or else millimetres.
+        is_near = 0.1 * distance < 2.0 * around
+        right, said = ((0.1 * com, 'a tenth of that') if is_near else
+                       (1e-3 * com, 'a thousandth of that'))
         hits.append(Hit(
             WARNING, 'far_com', entry.name,
             f"link '{entry.name}' has its centre of mass {number(distance)} m from its frame, in "

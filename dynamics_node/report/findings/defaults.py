@@ -29,7 +29,7 @@ def find_defaults(case):
     hits, balanced = [], []
     for entry in entries:
         inertial = case.links[entry.name].inertial
-        if _is_placeholder(inertial.tensor):
+        if is_placeholder(inertial.tensor):
             hits.append(_placeholder(case, entry, inertial))
         if _is_balanced(case, entry, inertial):
             balanced.append(_balanced(case, entry, inertial))
@@ -41,13 +41,26 @@ def find_defaults(case):
                   'exactly on their joint')]
 
 
-def _is_placeholder(tensor):
-    # c times identity with c = 1, 0.1, 1e-3...; or nothing at all.
+def is_placeholder(tensor):
+    """
+    Judge an inertia tensor.
+
+    Parameters
+    ----------
+    tensor : numpy.ndarray, shape (3, 3)
+        kg m².
+
+    Returns
+    -------
+    bool
+        Whether it is c times identity with c = 1, 0.1, 1e-3..., or nothing at all.
+
+    """
     value = tensor[0, 0]
     if np.any(tensor != value * np.eye(3)):
         return False
-    if value == 0.0:
-        return True
+    if value <= 0.0:
+        return bool(value == 0.0)
     power = math.log10(value)
     return abs(power - round(power)) < 1e-9
 
@@ -74,7 +87,7 @@ def _unit_masses(case, entries):
     exact = [entry for entry in entries if entry.mass == 1.0]
     if len(exact) < 2:
         return []
-    typed = [entry for entry in exact if _is_placeholder(case.links[entry.name].inertial.tensor)]
+    typed = [entry for entry in exact if is_placeholder(case.links[entry.name].inertial.tensor)]
     inertials = {entry.name: changed(case.links[entry.name].inertial, mass=2.0)
                  for entry in exact}
     return [Finding(
@@ -98,7 +111,7 @@ def _copies(case):
         if len(chain) < _COPIES or sum(entry.mass for entry in chain) < _LIGHT * case.moving_mass:
             continue
         lengths = {round(case.size_without_com(entry.name), 6) for entry in chain}
-        if len(lengths) == 1 and not _is_placeholder(case.links[chain[0].name].inertial.tensor):
+        if len(lengths) == 1 and not is_placeholder(case.links[chain[0].name].inertial.tensor):
             continue  # equal parts of equal length: a chain of modules
         link = chain[0].name
         effect = torque_effect(case, {link: changed(case.links[link].inertial,

@@ -13,6 +13,7 @@ from .matrix import find_matrix
 from .refusal import find_refusals
 from .tensors import find_tensors, mended_inertial
 from .tool import find_missing_tools
+from .units import find_units
 from ..report import SEVERITIES
 from ..study import Study
 from ...errors import RobotDescriptionError
@@ -45,7 +46,8 @@ def find_all(report, examination, study):
     if not (study is not None and study.model.joint_names):
         case = replace(case, study=None)
     found = [*find_refusals(case), *find_masses(case), *find_tensors(case), *find_defaults(case),
-             *find_coms(case), *find_missing_tools(case), *find_joints(case), *find_limits(case)]
+             *find_coms(case), *find_missing_tools(case), *find_joints(case), *find_limits(case),
+             *find_units(case)]
     kinds = {finding.kind for finding in found}
     found += find_matrix(case, bool(kinds & _SINGULAR))
     if 'missing_gripper' in kinds:

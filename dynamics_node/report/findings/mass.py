@@ -2,9 +2,11 @@
 
 import math
 
+from .defaults import is_placeholder
 from .effects import changed, payload_effect, torque_effect
 from .hit import Hit, told
 from .kinds import NOTE, PROBLEM, WARNING
+from .tensors import is_too_large
 from .words import factor, kilograms, names, number
 from ..report import Finding
 
@@ -17,10 +19,13 @@ _LIGHTER_AT_END, _LIGHT_AT_END = 500.0, 0.01
 # Radius of gyration, as a share of the robot's reach, that no light part of it has, and that none
 # has at all.
 _GYRATION, _GYRATION_OF_ALL = 0.5, 1.0
+# Moments of links lighter than this share of what moves do not tell what all of them are like.
+_LIGHT_LINK = 2e-3
 # What changes no torque by as much is not told.
 _MATTERS = 0.01
-# If grams were written as kilograms, then the mass is between these shares of its neighbours'.
-_PLAUSIBLE = (0.05, 20.0)
+# If grams were written as kilograms, then the mass is between these shares of its neighbours';
+# as what it may weigh it is named only if it is not much more than theirs.
+_PLAUSIBLE, _LIKELY = (0.05, 20.0), 3.0
 
 
 def find_masses(case):
@@ -57,7 +62,10 @@ def _negative(case):
 
 def _moves_nothing(case):
     # Only where a chain ends: a body without mass in the middle of one is how joints with
-    # several axes are written. Mimic joints count with the one that they follow.
+    # several axes are written. Mimic joints count with the one that they follow. Of parts nobody
+    # knows what is behind a joint, nor what a mass weighs that cannot be read.
+    if not case.examination.is_whole:
+        return []
     leaders: dict[str, list] = {}
     for joint in case.report.joints:
         leaders.setdefault(joint.mimics or joint.name, []).append(joint)
@@ -109,14 +117,15 @@ def _no_mass(entry):
 
 def _grams(case):
     hits = []
+    judges_moments = not _are_all_too_large(case)
     for entry in case.moved_with_mass:
-        reason = _too_light(case, entry)
+        reason = _too_light(case, entry, judges_moments)
         if reason is None:
             continue
         sentence, short, neighbours = reason
         mass = 1000.0 * entry.mass
         right = f'if it weighed {kilograms(mass)}'
-        if not _is_plausible(mass, neighbours):
+        if not _is_plausible(mass, neighbours) or mass > _LIKELY * max(neighbours):
             mass = math.exp(sum(map(math.log, neighbours)) / len(neighbours))
             right = f'if it weighed as much as its neighbours, {kilograms(mass)}'
         effect = torque_effect(
@@ -135,7 +144,13 @@ def _is_plausible(mass, neighbours):
     return _PLAUSIBLE[0] * min(neighbours) <= mass <= _PLAUSIBLE[1] * max(neighbours)
 
 
-def _too_light(case, entry):
+def _are_all_too_large(case):
+    # Then the unit of the moments is wrong, and not the mass of the lightest.
+    heavy = [entry for entry in case.moved_with_mass if entry.mass > _LIGHT_LINK * case.moving_mass]
+    return 2 * sum(is_too_large(case, entry) for entry in heavy) > len(heavy)
+
+
+def _too_light(case, entry, judges_moments):
     # A sentence, its numbers, and the masses of the neighbours, kg; None for a likely mass.
     body = case.body_mass[entry.carrier]
     parent = case.body_parent[entry.carrier]
@@ -151,11 +166,16 @@ def _too_light(case, entry):
         max(entry.principal_moments) > 0.0) else 0.0
     reach = case.reach
     is_most_of_body = entry.mass >= 0.5 * body
-    if entry.mass < 0.1 * max(neighbours) and ((
+    is_lighter = judges_moments and entry.mass < 0.1 * max(neighbours)
+    if is_lighter and ((
             gyration > _GYRATION_OF_ALL * reach > 0.0
             and _is_plausible(1000.0 * entry.mass, neighbours)) or (
             is_most_of_body and gyration > _GYRATION * reach > 0.0
-            and entry.mass < 0.1 * min(neighbours))):
+            and entry.mass < 0.1 * min(neighbours)) or (
+            # Beside heavier ones on the same body: a tool, or what carries one.
+            not is_most_of_body and entry.mass < _LIGHT and is_too_large(case, entry)
+            and _is_plausible(1000.0 * entry.mass, neighbours)
+            and not is_placeholder(case.links[entry.name].inertial.tensor))):
         return (f"link '{entry.name}' weighs {kilograms(entry.mass)}, but its moments of inertia "
                 f'are those of a part of {number(gyration)} m radius (sqrt(I/m)) in a robot that '
                 f'reaches {number(reach)} m; its neighbours weigh '

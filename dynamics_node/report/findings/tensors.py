@@ -44,7 +44,7 @@ def find_tensors(case):
         elif principal[2] - principal[1] - principal[0] > tolerance:
             triangle.append(_triangle(case, entry, principal, inertial))
         elif entry.carrier is not None and entry.mass > _LIGHT * case.moving_mass:
-            if _is_too_large(case, entry, principal):
+            if is_too_large(case, entry):
                 large.append(_too_large(case, entry, principal, inertial))
             elif _is_about_frame(inertial):
                 shifted.append(_about_frame(case, entry, inertial))
@@ -172,8 +172,22 @@ def _mended_effect(case, link, mended):
         'refuse the robot', float(share[place]))
 
 
-def _is_too_large(case, entry, principal):
-    gyration = math.sqrt(principal[2] / entry.mass)
+def is_too_large(case, entry):
+    """
+    Judge the moments of inertia of a link with mass.
+
+    Parameters
+    ----------
+    case : Case
+    entry : LinkEntry
+
+    Returns
+    -------
+    bool
+        Whether its mass would have to be far outside the link.
+
+    """
+    gyration = math.sqrt(max(0.0, entry.principal_moments[2]) / entry.mass)
     return (gyration > _LARGE * case.size(entry.name) and gyration
             > _OF_REACH * case.reach > 0.0)
 

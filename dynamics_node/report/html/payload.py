@@ -22,7 +22,9 @@ def payload_section(report):
 
     """
     payload = report.payload
-    facts = [('carried by', span(payload.link)),
+    guess = (' (a guess, the end of the heaviest chain before its fingers; '
+             '<code>--payload-link</code> chooses another)' if payload.is_guessed else '')
+    facts = [('carried by', span(payload.link) + guess),
              ('at the point', f'{text(vector(payload.point))} m, in the frame of the link')]
     if not payload.is_moved:
         facts.append(('at every pose', 'no joint moves this link'))

@@ -26,3 +26,8 @@ def test_coordinates_of_the_whole_robot_are_found():
 
 def test_a_centre_of_mass_a_little_outside_is_no_finding():
     assert not findings(changed(arm(), 'link3', com=[0.3, 0.1, 0.0]))
+
+
+def test_the_share_that_is_said_is_that_of_the_number():
+    [found] = findings(changed(arm(), 'link5', com=[0.0, 0.0, 1.5]))
+    assert 'a tenth of that, 0.15 m' in found.effect

@@ -1,5 +1,7 @@
 """Masses that are missing, negative or in grams."""
 
+from xml.etree import ElementTree
+
 from dynamics_node import RobotModel
 from dynamics_node.report import make_report
 import numpy as np
@@ -7,6 +9,7 @@ import pytest
 from support.arms import arm, changed, G
 from support.robots import ARM7, public_robot
 
+PANDA = 'panda_description/urdf/panda.urdf'
 XARM7 = 'xarm_description/urdf/xarm7.urdf'
 
 
@@ -65,6 +68,30 @@ def test_grams_beside_a_gripper_of_kilograms_are_found_by_their_inertia():
     assert found.subjects == ('link5',) and 'sqrt(I/m)' in found.what
 
 
+@pytest.mark.parametrize('link', ['panda_link7', 'panda_hand'])
+def test_7_g_beside_what_is_fixed_to_it_are_found(link):
+    text = public_robot(PANDA).read_text()
+    assert not findings(text, 'grams')
+    [found] = findings(changed(text, link, mass=0.007), 'grams')
+    assert found.subjects == (link,) and 'N m' in found.effect
+    assert 'as much as its neighbours' in found.effect  # 7 kg is no hand
+
+
+def test_feet_without_weight_are_no_grams():
+    assert not findings(public_robot('hyq_description/robots/hyq_no_sensors.urdf'), 'grams')
+
+
+def test_moments_in_another_unit_are_no_masses_in_grams():
+    robot = ElementTree.fromstring(public_robot(PANDA).read_text())
+    for inertia in robot.iter('inertia'):
+        for key, value in inertia.attrib.items():
+            inertia.set(key, repr(1e6 * float(value)))
+    text = ElementTree.tostring(robot, encoding='unicode')
+    assert not findings(text, 'grams')
+    [found] = findings(text, 'inertia_too_large')
+    assert len(found.subjects) > 5
+
+
 def test_a_light_link_between_light_ones_is_no_finding():
     small = tuple(mass / 500.0 for mass in (3.0, 2.5, 2.0, 1.2, 0.8))
     assert not findings(arm(small), 'grams')
@@ -117,6 +144,12 @@ def test_a_joint_that_moves_nothing_is_a_problem():
     report = make_report(text, samples=100)
     assert not report.conditioning.is_positive_definite
     assert 'singular_mass_matrix' not in {finding.kind for finding in report.findings}
+
+
+@pytest.mark.parametrize('mass', ['1,5', 'inf', '1e308'])
+def test_a_mass_that_cannot_be_read_is_no_joint_that_moves_nothing(mass):
+    text = changed(arm(tool=False), 'link5', mass=77.0).replace('"77.0"', f'"{mass}"')
+    assert [finding.kind for finding in make_report(text, samples=50).findings] == ['refused']
 
 
 def test_a_negative_mass_is_refused_and_told():

@@ -117,3 +117,9 @@ def test_a_tensor_about_the_frame_is_found_where_products_tell():
         zip(names, about_frame[np.triu_indices(3)].tolist(), strict=True)))
     [found] = findings(text, 'tensor_not_about_com')
     assert 'more inertia (D_jj) than with the tensor moved' in found.effect
+
+
+def test_a_negative_multiple_of_the_identity_is_refused_and_told():
+    report = make_report(changed(arm(), 'link3', tensor=-0.01), samples=50)
+    assert report.verdict == 'refused'
+    assert [finding.kind for finding in report.findings] == ['impossible_inertia']
