@@ -22,9 +22,9 @@ def default_payload_link(tree, description):
     Return the link at the end of the arm: the last one before the fingers of a hand.
 
     The walk along the moving bodies follows the heavier branch and ends where only light ones
-    are left, compared with the bodies from the base to there. Of the links of that body it takes one in which a chain of fixed joints ends and
-    that is called a tool centre, a tool or a hand; if there is none, one that is called so; and
-    if there is none, the last.
+    are left, compared with the bodies from the base to there. Of the links of that body it takes
+    one in which a chain of fixed joints ends and that is called a tool centre, a tool or a hand;
+    if there is none, one that is called so; and if there is none, the last.
 
     Parameters
     ----------

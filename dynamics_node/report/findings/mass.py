@@ -146,7 +146,8 @@ def _is_plausible(mass, neighbours):
 
 def _are_all_too_large(case):
     # Then the unit of the moments is wrong, and not the mass of the lightest.
-    heavy = [entry for entry in case.moved_with_mass if entry.mass > _LIGHT_LINK * case.moving_mass]
+    heavy = [entry for entry in case.moved_with_mass
+             if entry.mass > _LIGHT_LINK * case.moving_mass]
     return 2 * sum(is_too_large(case, entry) for entry in heavy) > len(heavy)
 
 
