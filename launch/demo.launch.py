@@ -19,7 +19,7 @@ from ament_index_python.packages import (
     PackageNotFoundError,
 )
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction
+from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction, Shutdown
 from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
@@ -34,23 +34,45 @@ def generate_launch_description():
     return LaunchDescription([
         DeclareLaunchArgument('robot', default_value=str(share / 'config/robots/arm7.urdf'),
                               description='Path of the URDF'),
-        DeclareLaunchArgument('params_file', default_value=str(share / 'config/dynamics.yaml'),
-                              description='Parameter file of the node'),
+        DeclareLaunchArgument('params_file', default_value='', description='Parameter file of '
+                              'the node. Empty: the defaults, but a state_timeout of 0.5 s'),
         DeclareLaunchArgument('namespace', default_value='',
                               description='Namespace of both and of their topics'),
         DeclareLaunchArgument('view', default_value='false',
                               description='Open the viewer of the simulated robot'),
         DeclareLaunchArgument('rviz', default_value='false',
                               description='Open RViz, if it is installed'),
-        Node(package='dynamics_node', executable='simulated_robot', name='simulated_robot',
-             namespace=LaunchConfiguration('namespace'),
-             parameters=[{'robot_description_file': LaunchConfiguration('robot'),
-                          'view': LaunchConfiguration('view')}], output='screen'),
-        Node(package='dynamics_node', executable='dynamics_node', name='dynamics_node',
-             namespace=LaunchConfiguration('namespace'),
-             parameters=[LaunchConfiguration('params_file')], output='screen'),
+        OpaqueFunction(function=start),
         OpaqueFunction(function=show, condition=IfCondition(LaunchConfiguration('rviz'))),
     ])
+
+
+def start(context):
+    """Return the simulated robot and the node."""
+    robot = file_of('robot', LaunchConfiguration('robot').perform(context))
+    params_file = LaunchConfiguration('params_file').perform(context)
+    # A simulation on a desktop computer is late more often than an arm.
+    parameters = ([file_of('params_file', params_file)] if params_file
+                  else [{'state_timeout': 0.5}])
+    namespace = LaunchConfiguration('namespace')
+    return [
+        Node(package='dynamics_node', executable='simulated_robot', name='simulated_robot',
+             namespace=namespace, parameters=[{'robot_description_file': robot,
+                                               'view': LaunchConfiguration('view')}],
+             # It has said why; the node would only say that nobody publishes a description.
+             output='screen', on_exit=Shutdown(reason='the simulated robot has ended')),
+        Node(package='dynamics_node', executable='dynamics_node', name='dynamics_node',
+             namespace=namespace, parameters=parameters, output='screen'),
+    ]
+
+
+def file_of(argument, path):
+    """Return the whole path of a file, which must be there."""
+    file = Path(path).expanduser().resolve()
+    # launch_ros only warns, and the node would start with the URDF's full effort limits.
+    if not file.is_file():
+        raise FileNotFoundError(f'{argument}: expected a file, got {str(file)!r}, which is none')
+    return str(file)
 
 
 def show(context):
@@ -62,7 +84,8 @@ def show(context):
                                 f'ros-$ROS_DISTRO-{package.replace("_", "-")}'
                                 for package in missing))]
     config = Path(get_package_share_directory('dynamics_node')) / 'config/dynamics.rviz'
-    text = Path(LaunchConfiguration('robot').perform(context)).read_text(encoding='utf-8')
+    robot = file_of('robot', LaunchConfiguration('robot').perform(context))
+    text = Path(robot).read_text(encoding='utf-8')
     namespace = LaunchConfiguration('namespace')
     # Link names are the same in every namespace, so each has its own frames.
     frames = [('/tf', 'tf'), ('/tf_static', 'tf_static')]

@@ -36,11 +36,20 @@ def generate_launch_description():
 def start_node(context):
     """Return the node; the argument robot counts more than the parameter file, if it is given."""
     robot = LaunchConfiguration('robot').perform(context)
-    described = [{'robot_description_file': str(Path(robot).expanduser().resolve())}]
+    described = [{'robot_description_file': file_of('robot', robot)}] if robot else []
+    parameters = file_of('params_file', LaunchConfiguration('params_file').perform(context))
     return [Node(
         package='dynamics_node', executable='dynamics_node', name='dynamics_node',
-        namespace=LaunchConfiguration('namespace'),
-        parameters=[LaunchConfiguration('params_file'), *(described if robot else [])],
+        namespace=LaunchConfiguration('namespace'), parameters=[parameters, *described],
         remappings=[(topic, LaunchConfiguration(topic))
                     for topic in ('joint_states', 'robot_description')],
         output='screen')]
+
+
+def file_of(argument, path):
+    """Return the whole path of a file, which must be there."""
+    file = Path(path).expanduser().resolve()
+    # launch_ros only warns, and the node would start with the URDF's full effort limits.
+    if not file.is_file():
+        raise FileNotFoundError(f'{argument}: expected a file, got {str(file)!r}, which is none')
+    return str(file)

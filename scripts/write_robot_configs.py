@@ -12,7 +12,6 @@ and try each with the demo, as its first lines say.
 """
 
 from dataclasses import dataclass
-import math
 from pathlib import Path
 import sys
 
@@ -20,11 +19,11 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / 'test')]
 
 from dynamics_node import RobotModel  # noqa: E402
+from dynamics_node.report import make_report  # noqa: E402
 import numpy as np  # noqa: E402
 from support.robots import ARM7, public_robot  # noqa: E402
 
 FOLDER = ROOT / 'config' / 'robots'
-SAMPLES, SEED = 20_000, 7
 # Of the largest gravity torque; and at least this part of what the URDF allows.
 MARGIN, LEAST = 1.25, 0.05
 
@@ -61,25 +60,14 @@ def urdf_path(arm):
     return public_robot(arm.urdf) if arm.urdf else ARM7
 
 
-def worst_gravity_torque(robot):
-    """
-    Return the largest absolute gravity torque of each joint, shape (n,), N m or N.
-
-    Over SAMPLES positions drawn evenly from the limits; a joint without limits turns once.
-
-    """
-    lower, upper = (np.where(np.isfinite(limit), limit, sign * math.pi)
-                    for limit, sign in zip(robot.position_limits.T, (-1.0, 1.0)))
-    rng = np.random.default_rng(SEED)
-    q = rng.uniform(lower, upper, (SAMPLES, len(lower)))
-    return np.abs(robot.gravity_torque(q)).max(0)
-
-
-def first_limits(robot):
+def first_limits(path):
     """Return effort limits for a first try, shape (n,), N m or N, rounded up to a tenth."""
+    report = make_report(path)
+    robot, own = report.model, {joint.name: joint.gravity for joint in report.joints}
+    worst = np.array([own[name].magnitude for name in robot.joint_names])
     allowed = np.where(np.isfinite(robot.effort_limits), robot.effort_limits, np.inf)
     least = np.where(np.isfinite(allowed), LEAST * allowed, 0.1)
-    wanted = np.ceil(10.0 * np.maximum(MARGIN * worst_gravity_torque(robot), least)) / 10.0
+    wanted = np.ceil(10.0 * np.maximum(MARGIN * worst, least)) / 10.0
     return np.minimum(wanted, allowed)
 
 
@@ -91,7 +79,7 @@ def render(name):
     path = 'arm7.urdf' if not arm.urdf else Path(arm.urdf).name
     warning = '\n'.join(f'# {line}' for line in arm.warning)
     joints = '\n'.join(f'      - {joint}' for joint in robot.joint_names)
-    limits = ', '.join(f'{limit:.1f}' for limit in first_limits(robot))
+    limits = ', '.join(f'{limit:.1f}' for limit in first_limits(urdf_path(arm)))
     return f"""# {name}: {arm.title}, for a first try. URDF: {where}.
 #
 # Simulated only: the demo held this arm in MuJoCo with these parameters, no real one was tried.

@@ -70,6 +70,25 @@ def test_a_robot_counts_more_than_the_parameter_file(given, expected):
     assert len(node._Node__parameters) == expected
 
 
+@pytest.mark.parametrize('path', LAUNCH_FILES, ids=lambda path: path.name)
+@pytest.mark.parametrize('argument', ['params_file', 'robot'])
+def test_a_file_that_is_not_there_starts_nothing(path, argument):
+    # The node would start with defaults: the URDF's full effort limits, say.
+    expected = f"{argument}: expected a file, got '/.*nope.yaml'"
+    with pytest.raises(FileNotFoundError, match=expected):
+        started(path, **{argument: 'nope.yaml'})
+
+
+def test_the_demo_waits_longer_for_states_unless_a_file_says_how_long(tmp_path):
+    path = ROOT / 'launch' / 'demo.launch.py'
+    [_, node], _ = started(path)
+    assert '0.5' in str(node._Node__parameters[0])
+    file = tmp_path / 'mine.yaml'
+    file.write_text('/**: {ros__parameters: {state_timeout: 0.2}}')
+    [_, node], _ = started(path, params_file=str(file))
+    assert len(node._Node__parameters) == 1 and '0.5' not in str(node._Node__parameters[0])
+
+
 def test_rviz_that_is_not_installed_is_no_reason_to_stop(monkeypatch):
     path = ROOT / 'launch' / 'demo.launch.py'
     plain, _ = started(path)

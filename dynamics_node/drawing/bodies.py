@@ -72,35 +72,33 @@ class Bodies:
 
     def shapes(self, poses):
         """
-        Return how they look.
+        Say how they look, one shape after the other.
 
         Parameters
         ----------
         poses : numpy.ndarray, shape (N, 4, 4)
             Moving body → base, m.
 
-        Returns
-        -------
-        list of Shape
+        Yields
+        ------
+        Shape
 
         """
         if not self._names:
-            return []
+            return
         poses = poses[self._rows]
         places = [tuple(place) for place in np.einsum('kij,kj->ki', poses[:, :3],
                                                       self._com).tolist()]
         turns = quaternions(poses[:, :3, :3] @ self._box_rotation).tolist()
-        found = []
         for k, (place, turn) in enumerate(zip(places, turns, strict=True)):
             if self._masses[k] > 0.0:
-                found.append(Shape(self._groups[0], k, SPHERE,
-                                   self._sphere_size[k], self._colours[0], place))
+                yield Shape(self._groups[0], k, SPHERE, self._sphere_size[k], self._colours[0],
+                            place)
             if k in self._box_size:
-                found.append(Shape(self._groups[1], k + self._offset, BOX,
-                                   self._box_size[k], self._colours[1], place, tuple(turn)))
+                yield Shape(self._groups[1], k + self._offset, BOX, self._box_size[k],
+                            self._colours[1], place, tuple(turn))
             if k in self._problems:
-                found += self._problem(k, place)
-        return found
+                yield from self._problem(k, place)
 
     @property
     def _offset(self):

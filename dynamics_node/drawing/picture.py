@@ -1,5 +1,7 @@
 """`Picture`: all that there is to see of a robot's dynamics at one state."""
 
+from itertools import chain, islice
+
 import numpy as np
 
 from . import colours, sizes
@@ -9,6 +11,8 @@ from .torques import Torques
 from ..inertia import transform_pseudo_inertia
 
 GRAVITY, PAYLOAD = 'gravity', 'payload'
+# Shapes in a piece: whoever has other things to do in between waits no longer than for these.
+PIECE = 20
 # m/s²: an arrow of gravity has its full length then.
 _EARTH = 9.81
 
@@ -62,16 +66,19 @@ class Picture:
         Yields
         ------
         list of Shape
-            In the base frame: masses and gravity, then efforts. Nothing where the robot is at
-            no finite place.
+            In the base frame, at most PIECE: masses and gravity, then efforts. Nothing where the
+            robot is at no finite place.
 
         """
         poses = model.body_poses(q)
         if not np.isfinite(poses).all():
             return
-        yield [*self._bodies.shapes(poses), *self._carried(model.payload).shapes(poses),
-               *self._gravity(model.gravity.tolist())]
-        yield self._torques.shapes(poses, gravity_torque, effort, limits)
+        shapes = chain(
+            self._bodies.shapes(poses), self._carried(model.payload).shapes(poses),
+            self._gravity(model.gravity.tolist()),
+            self._torques.shapes(poses, gravity_torque, effort, limits))
+        while piece := list(islice(shapes, PIECE)):
+            yield piece
 
     def shapes(self, *arguments):
         """Draw one state at once: all that `parts` yields, a list of Shape."""

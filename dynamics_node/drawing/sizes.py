@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model.tree import PRISMATIC
+
 # Of the reach: the sphere of the heaviest body, the largest arc around a joint, the arrow of
 # 9.81 m/s², the height of a text, and the thinnest that a solid is drawn.
 HEAVIEST, ARC, GRAVITY, TEXT, THINNEST = 0.032, 0.09, 0.2, 0.02, 5e-4
@@ -12,6 +14,8 @@ _SAME_PLACE = 0.01
 # Of the distance to the nearest neighbour: as large an arc may be. And of ARC: it is never
 # smaller.
 _ROOM, _LEAST = 0.6, 0.5
+# m: what a description says in place of "without limit".
+_FAR = 1e3
 
 
 @dataclass(frozen=True)
@@ -99,8 +103,8 @@ def reach(tree):
 def _travel(tree, k):
     # Of a prismatic joint with limits; rails are long, and their joints are at one end.
     low, high = tree.limits[tree.coordinate[k], :2]
-    travel = (high - low) * abs(tree.multiplier[k]) if tree.kind[k] else 0.0
-    return travel if np.isfinite(travel) else 0.0
+    travel = high - low if tree.kind[k] == PRISMATIC else 0.0
+    return travel * abs(tree.multiplier[k]) if travel < _FAR else 0.0
 
 
 def arc_radii(tree, longest):

@@ -52,7 +52,7 @@ class Torques:
 
     def shapes(self, poses, gravity_torque, effort, limits):
         """
-        Return how efforts look at one state.
+        Say how efforts look at one state, one shape after the other.
 
         Parameters
         ----------
@@ -65,13 +65,13 @@ class Torques:
         limits : numpy.ndarray, shape (m,)
             N m or N; NaN where there is none.
 
-        Returns
-        -------
-        list of Shape
+        Yields
+        ------
+        Shape
 
         """
         if not self._names:
-            return []
+            return
         # The axes of a joint do not turn with it: where an arc begins stays where it is.
         parents = np.where((self._parents >= 0)[:, None, None],
                            poses[self._parents, :3, :3], np.eye(3))
@@ -80,24 +80,23 @@ class Torques:
         places = [tuple(place) for place in poses[self._rows, :3, 3].tolist()]
         limits = [limit if limit > 0.0 and math.isfinite(limit) else math.nan
                   for limit in limits.tolist()]
-        found = []
         for i, radius in enumerate(self._radius):
             if not self._is_prismatic[i]:
-                found.append(Shape(JOINTS, i, DISC, (2.2 * radius, 2.2 * radius, 0.02 * radius),
-                                   colours.JOINT, places[i], turns[i]))
+                yield Shape(JOINTS, i, DISC, (2.2 * radius, 2.2 * radius, 0.02 * radius),
+                            colours.JOINT, places[i], turns[i])
         gravity_torque = gravity_torque.tolist()
         for group, values in ((GRAVITY_TORQUE, gravity_torque), (EFFORT, effort.tolist())):
             loads = self._loads(values, limits)
-            found += [self._line(group, i, load, math.isnan(limits[i]), places[i], turns[i])
-                      for i, load in enumerate(loads) if math.isfinite(load)]
+            for i, load in enumerate(loads):
+                if math.isfinite(load):
+                    yield self._line(group, i, load, math.isnan(limits[i]), places[i], turns[i])
         across = turned[:, :, 0].tolist()
         for i, value in enumerate(gravity_torque):
             out = -1.4 * self._radius[i]  # where the arcs do not begin
             x, y, z = (p + out * a for p, a in zip(places[i], across[i], strict=True))
             place = (x, y, z + self._lift[i])
-            found.append(Shape(TEXTS, i, TEXT, self._sizes.text_size, colours.TEXT, place,
-                               text=self._text(i, value, limits[i])))
-        return found
+            yield Shape(TEXTS, i, TEXT, self._sizes.text_size, colours.TEXT, place,
+                        text=self._text(i, value, limits[i]))
 
     def _loads(self, values, limits):
         # Of the limit; where there is none, of the largest effort of its kind.

@@ -45,8 +45,12 @@ class JointSelection:
         self.names = tuple(names) or available
         # Counted once: looking for each name among all takes seconds for ten thousand.
         count, known = Counter(self.names), set(available)
-        wrong = _listed([name for name in count if name not in known],
+        followers = dict(zip(robot.tree.body_names, robot.tree.coordinate, strict=True))
+        unknown = [name for name in count if name not in known]
+        wrong = _listed([name for name in unknown if name not in followers],
                         'is not a joint that can be moved')
+        wrong += [f'{quoted(name)} follows {available[followers[name]]!r}: leave it out'
+                  for name in unknown if name in followers][:_MOST_SHOWN]
         wrong += _listed(sorted(name for name in count if count[name] > 1), 'is given twice')
         if wrong:
             raise ArgumentError(f'joints: {"; ".join(wrong)}; available: {", ".join(available)}')

@@ -107,11 +107,7 @@ def _terminal():
 
 
 def _write_html(report, path):
-    try:
-        from .html import write_html
-    except ModuleNotFoundError as error:
-        raise _UnusableError(f'--html needs the Python package plotly ({error}): '
-                             'pip install plotly') from error
+    from .html import write_html
     try:
         write_html(report, path)
     except ModuleNotFoundError as error:

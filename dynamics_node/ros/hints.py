@@ -1,5 +1,6 @@
 """What the log says when the node waits for something: what is missing, and what to type."""
 
+from collections import Counter
 import time
 
 from .elsewhere import listened_elsewhere, published_elsewhere
@@ -13,6 +14,8 @@ PATIENCE = 5.0
 REPEAT_EVERY = 10.0
 # Names that a hint shows of a list.
 SHOWN = 8
+# How drivers call joint states that are not complete or not filtered.
+_STATES = ('', '_raw', '_unfiltered')
 
 
 class Hints:
@@ -40,6 +43,7 @@ class Hints:
         self._now = now
         self._start = now()
         self._due = Throttle(REPEAT_EVERY, now)
+        self._rejected = Counter()  # before joints began to be missing
 
     def give(self):
         """Log what is missing and what to type, if something is missing for too long."""
@@ -52,6 +56,8 @@ class Hints:
         missing = robot.buffer.stale_joints(self._now(), PATIENCE)
         if missing:
             self._say(lambda: self._about_states(robot, missing))
+        else:
+            self._rejected = Counter(robot.buffer.rejected)
 
     def _say(self, text):
         if self._due.is_due():
@@ -72,16 +78,23 @@ class Hints:
     def _about_states(self, robot, missing):
         topic = self._states.topic
         lines = [f'no joint state on {topic} for {_some(missing)} for {PATIENCE:g} s.']
-        lines += self._heard_elsewhere(self._states.subscription, 'joint_states')
-        if len(lines) == 1:
-            heard = robot.buffer.newest_names
-            lines += _about_names(robot, missing, heard, topic) if heard else [
-                f'Nobody is heard there. Who publishes: ros2 topic info --verbose {topic}',
-                'Start the broadcaster: ros2 control load_controller --set-state active '
-                'joint_state_broadcaster']
+        lines += self._heard_elsewhere(self._states.subscription, 'joint_states', _STATES)
+        if len(lines) > 1:
+            return '\n  '.join(lines)
+        heard = robot.buffer.newest_names
+        if not self._node.count_publishers(topic):
+            lines += ['Nobody publishes there' + (' any more.' if heard else '.'),
+                      'Start the broadcaster: ros2 control load_controller --set-state active '
+                      'joint_state_broadcaster']
+        elif not heard:
+            lines.append('Somebody publishes there, but nothing comes: ros2 topic info --verbose '
+                         f'{topic}')
+        else:
+            lines += _about_names(robot, missing, heard, topic,
+                                  Counter(robot.buffer.rejected) - self._rejected)
         return '\n  '.join(lines)
 
-    def _heard_elsewhere(self, subscription, name):
+    def _heard_elsewhere(self, subscription, name, endings=('',)):
         # First who is there and not heard, then who is somewhere else.
         texts = mismatches(self._node, subscription)
         if texts:
@@ -91,7 +104,7 @@ class Hints:
         own = self._node.get_namespace().rstrip('/')
         return [f'But {topic} has it: add to the command line  --ros-args '
                 f'{_rule(topic, name, own)}'
-                for topic in published_elsewhere(self._node, subscription)]
+                for topic in published_elsewhere(self._node, subscription, endings)]
 
 
 def unheard(node, publisher):
@@ -113,14 +126,17 @@ def unheard(node, publisher):
     topic = publisher.topic_name
     listened = listened_elsewhere(node, publisher)
     if listened:
-        return ('nobody listens there, but somebody does on ' + ', '.join(listened) + ': start '
-                f'the node with  --ros-args -p command_topic:={listened[0]}')
+        return ('nobody listens there, but somebody does on ' + ', '.join(listened) + ': if that '
+                'is an effort controller, start the node with  --ros-args -p '
+                f'command_topic:={listened[0]}')
     namespace, _, controller = topic.rpartition('/')[0].rpartition('/')
     manager = f' --controller-manager {namespace}/controller_manager' if namespace else ''
-    return ('nobody listens there: look with  ros2 control list_controllers' + manager
-            + f'  and start it with  ros2 control load_controller{manager} --set-state active '
-            f'{controller or "forward_effort_controller"}  or set command_topic to that of '
-            'another effort controller')
+    # Only who listens before the output is on sees the ramp.
+    return ('nobody listens there: call ~/enable with false first, because a controller that '
+            'begins to listen now gets the whole effort at once; then look with  ros2 control '
+            f'list_controllers{manager}  and start it with  ros2 control load_controller{manager}'
+            f' --set-state active {controller or "forward_effort_controller"}  or set '
+            'command_topic to that of another effort controller')
 
 
 def _rule(topic, name, own):
@@ -130,13 +146,13 @@ def _rule(topic, name, own):
     return f'-r {name}:={topic}'
 
 
-def _about_names(robot, missing, heard, topic):
+def _about_names(robot, missing, heard, topic, rejected):
     # Messages come, but nothing that can be used of these joints.
     lines = [f'There come {_some([quoted(name) for name in heard])}: look with  '
              f'ros2 topic echo --once {topic}']
     if set(missing) <= set(heard):
         dropped = ', '.join(f'{count} for {kind}'
-                            for kind, count in robot.buffer.rejected.most_common())
+                            for kind, count in rejected.most_common())
         return [*lines, f'They are dropped ({dropped}): the warnings above say why'] \
             if dropped else lines
     prefix = _prefix(missing, heard)

@@ -10,6 +10,8 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from ..drawing import ARROW, BOX, DISC, LINE, Shape, SPHERE, TEXT
 
+# Shapes that are written in one step.
+PIECE = 40
 # What is not replaced for so long is gone: nobody must see an arm that is not there any more, s.
 LIFETIME = 1
 _TYPES = {SPHERE: Marker.SPHERE, BOX: Marker.CUBE, DISC: Marker.CYLINDER, LINE: Marker.LINE_STRIP,
@@ -100,6 +102,24 @@ class MarkerWriter:
         bytes
 
         """
+        *_, data = self.steps(shapes, stamp, begins_anew)
+        return data
+
+    def steps(self, shapes, stamp, begins_anew):
+        """
+        Write a picture piece by piece, for whoever has other things to do in between.
+
+        Parameters
+        ----------
+        shapes, stamp, begins_anew
+            See `as_message`.
+
+        Yields
+        ------
+        None or bytes
+            None after every PIECE shapes, the bytes of the whole at last.
+
+        """
         out = bytearray(struct.pack('<I', len(shapes) + begins_anew))
         stamp = struct.pack('<iI', stamp.sec, stamp.nanosec)
         if begins_anew:
@@ -107,7 +127,10 @@ class MarkerWriter:
             _fill(out, _POSE.pack(*[0.0] * 6, 1.0, *[0.0] * 3), 8)
             out += _REST.pack(*[0.0] * 4, 0, 0, False, 0) + _BEFORE_TEXT + _text('')
             _fill(out, _AFTER_TEXT)
-        for group, number, kind, size, colour, position, turn, points, text in shapes:
+        for count, shape in enumerate(shapes):
+            if count and count % PIECE == 0:
+                yield None
+            group, number, kind, size, colour, position, turn, points, text = shape
             start = self._starts.get((group, number, kind))
             if start is None:
                 start = self._start(group, number, _TYPES[kind], Marker.ADD)
@@ -119,7 +142,7 @@ class MarkerWriter:
                 _fill(out, struct.pack(f'<{3 * len(points)}d', *[x for p in points for x in p]), 8)
             out += _BEFORE_TEXT + _text(text)
             _fill(out, _AFTER_TEXT)
-        return _ENCAPSULATION + bytes(out)
+        yield _ENCAPSULATION + bytes(out)
 
     def _start(self, group, number, kind, action):
         # What comes between the stamp and the pose and never changes.

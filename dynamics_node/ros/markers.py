@@ -16,8 +16,12 @@ from ..drawing import Picture
 
 # People see no more, and the torque needs the time, s.
 PERIOD = 0.05
-# States that come faster than this do not wait for a whole picture, s.
-PRESSING = 0.01
+# Of the time between two states, so much goes into the picture, and at least one step of it.
+SHARE = 0.1
+# s: not more, however rare the states are.
+LONGEST = 0.05
+# The shortest time between two complaints about what cannot be drawn, s.
+COMPLAIN_EVERY = 10.0
 
 
 class Markers:
@@ -54,9 +58,10 @@ class Markers:
                                                 event_callbacks=NO_EVENTS)
         self._is_wanted = Listened(self._publisher)
         self._due = Throttle(PERIOD, clock)
+        self._complaint = Throttle(COMPLAIN_EVERY, clock)
         self._view: _View | None = None
         self._steps: Iterator = iter(())
-        self._last = float('-inf')
+        self._last = clock()
         self.is_on = False
 
     @logged
@@ -74,8 +79,8 @@ class Markers:
         """
         Go on with the picture, or begin one if it is time, while somebody listens.
 
-        A picture takes longer than a state, so it is made in steps, one after each state, and
-        the next state finds the node waiting for it. Where states are rare it is made at once.
+        A picture takes longer than a state, so it is made in steps, some after each state, and
+        the next state finds the node waiting for it.
 
         Parameters
         ----------
@@ -89,23 +94,28 @@ class Markers:
         """
         was, self.is_on = self.is_on, bool(self._is_wanted)
         if self.is_on != was:
-            self._steps = iter(())
+            self._steps, self._last = iter(()), self._clock()
             self._on_change()  # from the next state on there are efforts
             return
         if not self.is_on:
             return
         before, self._last = self._last, self._clock()
-        is_pressing = self._last - before < PRESSING
-        if not self._go_on(is_pressing) and self._due.is_due():
-            self._steps = self._draw(robot, stamp, gravity_torque)
-            self._go_on(is_pressing)
+        until = self._last + min(SHARE * (self._last - before), LONGEST)
+        try:
+            if not self._go_on(until) and self._due.is_due():
+                self._steps = self._draw(robot, stamp, gravity_torque)
+                self._go_on(until)
+        except Exception:
+            self._steps = iter(())
+            if self._complaint.is_due():  # the next picture will fail as this one
+                raise
 
-    def _go_on(self, is_pressing):
+    def _go_on(self, until):
         # False if there was nothing to go on with.
         has_begun = False
         for _ in self._steps:
             has_begun = True
-            if is_pressing:
+            if self._clock() >= until:
                 break
         return has_begun
 
@@ -118,8 +128,10 @@ class Markers:
                 robot.effort_limits(self._parameters['effort_limits'])):
             shapes += part
             yield
-        self._publisher.publish(view.message(shapes, stamp))
-        yield
+        for data in view.steps(shapes, stamp):
+            if data is not None:
+                self._publisher.publish(data)
+            yield
 
     def _effort(self, robot):
         # As measured; where the arm does not say it, what it is told.
@@ -141,11 +153,12 @@ class _View:
         self._is_writer_right = self._writer.is_right()
         self._shown = before._shown if before else None
 
-    def message(self, shapes, stamp):
-        """Return a picture as a message or, far sooner, as its bytes."""
+    def steps(self, shapes, stamp):
+        """Write a picture as a message or, sooner, as its bytes: yield None, and it at last."""
         # What is not there any more goes at once, not after its lifetime.
         shown = {shape[:2] for shape in shapes}
         begins_anew, self._shown = shown != self._shown, shown
         if self._is_writer_right:
-            return self._writer.write(shapes, stamp, begins_anew)
-        return as_message(shapes, stamp, self._frame_id, begins_anew)
+            yield from self._writer.steps(shapes, stamp, begins_anew)
+        else:
+            yield as_message(shapes, stamp, self._frame_id, begins_anew)

@@ -13,6 +13,8 @@ from ..output import RejectedStateError, take_state
 
 # The shortest time between two warnings about the same thing, s.
 WARN_EVERY = 1.0
+# An arm may rest at its stop, a little beyond its limit, for hours.
+WARN_OF_LIMITS_EVERY = 30.0
 
 
 class StateInput:
@@ -124,7 +126,7 @@ class StateInput:
         if not is_usable:
             return
         outside = robot.buffer.outside()
-        if outside and self._is_due('outside'):
+        if outside and self._is_due('outside', WARN_OF_LIMITS_EVERY):
             self.logger.warning(f'beyond the position limits: {outside}')
         if not stamp:
             header_stamp = self._arrival_time()
@@ -134,8 +136,8 @@ class StateInput:
         if self._is_due(error.kind):
             self.logger.warning(f'joint state dropped: {error}')
 
-    def _is_due(self, kind):
-        return self._warnings.setdefault(kind, Throttle(WARN_EVERY)).is_due()
+    def _is_due(self, kind, period=WARN_EVERY):
+        return self._warnings.setdefault(kind, Throttle(period)).is_due()
 
     def _arrival_time(self):
         if not self._has_unstamped:

@@ -39,7 +39,10 @@ another state, `joint_names` for another order. Matrices are row-major."""
 
 PARAMETERS_TEXT = """A commented file with all of them:
 [config/dynamics.yaml](../config/dynamics.yaml). Wrong values are refused with the reason, at
-the start and at run time. Read-only ones are set at the start."""
+the start and at run time. Read-only ones are set at the start. Besides these, the node has those
+of every ROS 2 node: `use_sim_time` (on both sides, if a simulation publishes `/clock`),
+`start_type_description_service`, and `qos_overrides./joint_states.subscription.*` (`reliability`,
+`depth`, `history`, `durability`)."""
 
 PROGRAMS = """| command | what it is |
 |---|---|

@@ -154,3 +154,15 @@ def test_a_payload_on_the_base_is_not_drawn():
     robot = RobotModel.from_urdf(ARM7)
     robot = robot.with_payload(robot.tree.root, 2.0)
     assert 'payload' not in {shape.group for shape in drawn(robot, robot.neutral_position)}
+
+
+def test_a_feather_beside_a_rock_is_still_to_be_seen():
+    text = random_urdf(0)
+    robot = RobotModel.from_urdf(text)
+    heaviest = robot.tree.inertia[:, 3, 3].max()
+    feather = robot.with_payload(robot.tip_link, 1e-12 * heaviest)
+    q = np.zeros(len(robot.joint_names))
+    spheres = [shape for shape in drawn(feather, q) if shape.kind == SPHERE]
+    largest = max(shape.size[0] for shape in spheres)
+    smallest = min(shape.size[0] for shape in spheres)
+    assert smallest == pytest.approx(0.08 * largest)

@@ -2,6 +2,7 @@
 
 from dynamics_node import RobotModel
 from dynamics_node.drawing import ARROW, Picture
+from dynamics_node.drawing.picture import PIECE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -95,5 +96,44 @@ def test_the_parts_are_the_whole():
     picture = Picture(robot.tree, robot.joint_names)
     arguments = (robot, robot.neutral_position, np.ones(8), np.ones(8), robot.effort_limits)
     parts = list(picture.parts(*arguments))
-    assert len(parts) == 2 and all(parts)
-    assert [*parts[0], *parts[1]] == picture.shapes(*arguments)
+    assert len(parts) > 2
+    assert {len(part) for part in parts[:-1]} == {PIECE} and 0 < len(parts[-1]) <= PIECE
+    assert [shape for part in parts for shape in part] == picture.shapes(*arguments)
+
+
+def arrow_of(gravity):
+    """Return the arrow of gravity of the pendulum, and how long the pendulum is."""
+    robot = RobotModel.from_urdf(PENDULUM).with_gravity(gravity)
+    [arrow] = [shape for shape in picture_of(robot, np.zeros(1), np.zeros(1), robot.effort_limits)
+               if shape.kind == ARROW]
+    return arrow, 0.35
+
+
+@pytest.mark.parametrize(('strength', 'times'), [(9.81, 1.0), (1.62, 1.62 / 9.81), (1000.0, 2.0)])
+def test_the_arrow_of_gravity_is_never_longer_than_twice_that_of_the_earth(strength, times):
+    arrow, reach = arrow_of((0.0, 0.0, -strength))
+    assert np.linalg.norm(arrow.points[1]) == pytest.approx(0.2 * reach * times)
+
+
+@pytest.mark.parametrize('gravity', [(0.0, 0.0, -9.81), (9.81, 0.0, 0.0)])
+def test_the_arrow_of_gravity_stands_beside_the_base_and_above_it(gravity):
+    arrow, reach = arrow_of(gravity)
+    down = np.array(gravity) / 9.81
+    end = np.add(arrow.position, arrow.points[1])
+    beside = end - (end @ down) * down
+    assert np.linalg.norm(beside) == pytest.approx(0.2 * reach)
+    assert end @ down == pytest.approx(0.0, abs=1e-12)
+
+
+def test_another_payload_takes_the_place_of_the_one_before():
+    robot = RobotModel.from_urdf(ARM7)
+    picture = Picture(robot.tree, robot.joint_names)
+
+    def payload(model):
+        q = robot.neutral_position
+        return [shape.size for shape in picture.shapes(
+            model, q, np.zeros(8), np.ones(8), robot.effort_limits) if shape.group == 'payload']
+    small, large = (robot.with_payload('hand', mass) for mass in (1.0, 2.0))
+    first, second = payload(small), payload(large)
+    assert first and second[0][0] == pytest.approx(first[0][0] * 2.0 ** (1 / 3))
+    assert payload(robot) == [] and payload(small) == first

@@ -155,3 +155,14 @@ def test_texts_of_joints_at_one_place_are_in_lines():
         for other in texts[:i]:
             apart = np.abs(np.subtract(text.position, other.position))
             assert apart.max() > 1.2 * text.size[2], (text.text, other.text)
+
+
+def test_without_limits_forces_and_torques_are_each_compared_with_their_own_kind():
+    robot = RobotModel.from_urdf(ARM7)
+    torque = np.array([2.0, -8.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1000.0])  # the last one slides
+    shapes = drawn(robot, robot.neutral_position, torque)
+    assert swept(shapes['gravity_torque', 0]) == pytest.approx(FULL / 4)
+    assert swept(shapes['gravity_torque', 1]) == pytest.approx(-FULL)
+    arrow, alone = shapes['gravity_torque', 7], drawn(
+        robot, robot.neutral_position, [0, 0, 0, 0, 0, 0, 0, 1.0])['gravity_torque', 7]
+    assert arrow.points == alone.points

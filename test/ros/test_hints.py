@@ -69,6 +69,12 @@ def waiting():
     waiting.client.close()
 
 
+@pytest.fixture
+def published(waiting, other):
+    """Let somebody publish joint states."""
+    waiting.client.until(lambda: waiting.client.node.count_publishers('/joint_states'))
+
+
 def test_nothing_is_said_too_early_too_often_or_without_need(waiting, capfd):
     assert waiting.after(0.99 * PATIENCE, capfd) == ''
     assert 'no robot description' in waiting.after(0.01 * PATIENCE, capfd)
@@ -93,17 +99,20 @@ def test_a_description_in_another_namespace_is_found(waiting, other, capfd):
     other.node.create_publisher(String, '/left/robot_description', LATCHED)
     # Nobody publishes this one, so it helps nobody.
     other.node.create_subscription(String, '/right/robot_description', lambda _: None, LATCHED)
+    # What a motion planner publishes is another kind of description.
+    other.node.create_publisher(String, '/robot_description_semantic', LATCHED)
     # Has the name, but another type.
     other.node.create_publisher(JointState, '/up/robot_description', LATCHED)
     other.node.destroy_publisher(other.description)
     graph = waiting.client.node
     waiting.client.until(lambda: graph.count_publishers('/left/robot_description')
                          and graph.count_publishers('/up/robot_description')
+                         and graph.count_publishers('/robot_description_semantic')
                          and not graph.count_publishers('/robot_description'))
     text = waiting.after(PATIENCE, capfd)
     assert 'But /left/robot_description has it' in text
     assert '--ros-args -r __ns:=/left' in text
-    assert '/right' not in text and '/up' not in text
+    assert '/right' not in text and '/up' not in text and 'semantic' not in text
 
 
 def test_in_a_namespace_of_its_own_only_the_topic_is_remapped(other, capfd):
@@ -121,12 +130,29 @@ def test_in_a_namespace_of_its_own_only_the_topic_is_remapped(other, capfd):
     assert '-r robot_description:=/left/robot_description' in text
 
 
+BROADCASTER = 'ros2 control load_controller --set-state active joint_state_broadcaster'
+
+
 def test_without_joint_states_the_broadcaster_is_started(waiting, capfd):
     waiting.describe()
     text = waiting.after(PATIENCE, capfd)
     assert f'no joint state on /joint_states for {ARM.joint_names[0]}, ' in text
-    assert 'ros2 topic info --verbose /joint_states' in text
-    assert 'ros2 control load_controller --set-state active joint_state_broadcaster' in text
+    assert 'Nobody publishes there.' in text and BROADCASTER in text
+
+
+def test_joint_states_that_have_ended_are_said_to_have_ended(waiting, capfd):
+    waiting.describe()
+    waiting.feed(ARM.joint_names)
+    with pytest.raises(RejectedStateError):
+        waiting.feed(ARM.joint_names, [np.nan] * 8)
+    text = waiting.after(PATIENCE + 1.0, capfd)
+    assert 'Nobody publishes there any more.' in text and BROADCASTER in text
+    assert 'There come' not in text and 'dropped' not in text
+
+
+def test_a_publisher_that_says_nothing_is_looked_at(waiting, published, capfd):
+    waiting.describe()
+    assert 'ros2 topic info --verbose /joint_states' in waiting.after(PATIENCE, capfd)
 
 
 def test_joint_states_under_another_name_are_found(waiting, other, capfd):
@@ -140,7 +166,7 @@ def test_joint_states_under_another_name_are_found(waiting, other, capfd):
     assert '--ros-args -r joint_states:=/arm/joint_states_raw' in text
 
 
-def test_some_joints_are_missing(waiting, capfd):
+def test_some_joints_are_missing(waiting, published, capfd):
     waiting.describe()
     there = ARM.joint_names[:-1]
     for _ in range(4):
@@ -152,7 +178,7 @@ def test_some_joints_are_missing(waiting, capfd):
     assert f"-p joints:='[{', '.join(there)}]'" in text
 
 
-def test_a_prefix_before_every_name_is_recognised(waiting, capfd):
+def test_a_prefix_before_every_name_is_recognised(waiting, published, capfd):
     waiting.describe()
     waiting.feed([f'left_{name}' for name in ARM.joint_names])
     text = waiting.after(PATIENCE, capfd)
@@ -164,13 +190,17 @@ def test_a_prefix_before_every_name_is_recognised(waiting, capfd):
     assert '\x1b[31m' not in text and len(text) < 1500
 
 
-def test_dropped_states_are_not_taken_for_missing_names(waiting, capfd):
+def test_dropped_states_are_not_taken_for_missing_names(waiting, published, capfd):
     waiting.describe()
     with pytest.raises(RejectedStateError):
         waiting.feed(ARM.joint_names, [np.nan] * 8)
     text = waiting.after(PATIENCE, capfd)
     assert 'They are dropped (1 for not finite)' in text
     assert 'joints:=' not in text
+    # What was dropped while all was well is not why they are missing now.
+    waiting.feed(ARM.joint_names)
+    assert waiting.after(0.0, capfd) == ''
+    assert 'dropped' not in waiting.after(REPEAT_EVERY, capfd)
 
 
 def test_nobody_listens_to_the_commands(waiting, other):
@@ -184,6 +214,12 @@ def test_nobody_listens_to_the_commands(waiting, other):
             'effort') in unheard(node, in_namespace)
     assert 'active forward_effort_controller' in unheard(
         node, node.create_publisher(Float64MultiArray, '/efforts', 1))
+    # Takes radians.
+    other.node.create_subscription(Float64MultiArray, '/forward_position_controller/commands',
+                                   lambda _: None, 1)
+    waiting.client.until(
+        lambda: node.count_subscribers('/forward_position_controller/commands'))
+    assert 'forward_position_controller' not in unheard(node, publisher)
     other.node.create_subscription(Float64MultiArray, '/arm_controller/commands',
                                    lambda _: None, 1)
     waiting.client.until(lambda: node.count_subscribers('/arm_controller/commands'))

@@ -9,13 +9,14 @@ from builtin_interfaces.msg import Time
 from dynamics_interfaces.srv import GetGravityTorque, SetPayload
 from dynamics_node import RobotModel
 from dynamics_node.ros import marker_writer
-from dynamics_node.ros.markers import Markers, PERIOD, PRESSING
+from dynamics_node.ros.markers import COMPLAIN_EVERY, LONGEST, Markers, PERIOD, SHARE
 from dynamics_node.ros.robot import Robot
 from geometry_msgs.msg import Inertia, Vector3
 import numpy as np
 import pinocchio
 import pytest
 from std_msgs.msg import String
+from support.extreme_robots import chain
 from support.robots import ARM7, PENDULUM, public_robot
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -195,16 +196,21 @@ class Direct:
 
     def __init__(self, client, listeners=1):
         self.listeners, self.published, self.changes, self.time = listeners, [], 0, 0.0
+        self.cost = 0.0  # of every look at the clock, so of every step, s
         self.robot = Robot(RobotModel.from_urdf(ARM7), ())
         publisher = types.SimpleNamespace(publish=self.published.append,
                                           get_subscription_count=lambda: self.listeners)
         channel = types.SimpleNamespace(machine=types.SimpleNamespace(is_on=False))
         self.unit = Markers(types.SimpleNamespace(
             get_logger=client.node.get_logger, create_publisher=lambda *_, **__: publisher),
-            {'effort_limits': ()}, channel, self._changed, lambda: self.time)
+            {'effort_limits': ()}, channel, self._changed, self._clock)
 
     def _changed(self):
         self.changes += 1
+
+    def _clock(self):
+        self.time += self.cost
+        return self.time
 
     def state(self, stamp=None, after=1.0):
         """Take a state some time, s, after the last; return how many messages there are."""
@@ -217,34 +223,69 @@ def test_rare_states_make_a_picture_at_once_and_pressing_ones_in_steps(client):
     direct = Direct(client)
     assert direct.state() == 0 and direct.changes == 1  # from the next one on there are efforts
     assert [direct.state() for _ in range(3)] == [1, 2, 3]
-    stamp, counts = Time(sec=0), []
+    direct.cost = 0.0003
+    stamp, counts, times = Time(sec=0), [], []
     for _ in range(100):
         stamp.sec += 1  # as the next state does it, in the same message
+        before = direct.time + 0.002
         counts.append(direct.state(stamp, after=0.002))
+        times.append(direct.time - before)
+    # A step takes longer than a tenth of the time between states: one of them after each.
+    assert max(times) < 5 * direct.cost
     steps = np.diff([3, *counts])
-    assert set(steps) == {0, 1} and counts[-1] in (6, 7)  # three or four times PERIOD
+    assert set(steps) == {0, 1} and 3 <= steps.sum() <= 6
     sent = np.flatnonzero(steps)
-    assert np.diff(sent).min() >= PERIOD / 0.002 - 1
-    # The stamp is that of the state that the picture shows, two steps before it goes out.
+    # The stamp is that of the state that the picture shows, some before it goes out.
     for place, data in zip(sent, direct.published[3:], strict=True):
         picture = marker_writer.deserialize_message(data, MarkerArray)
-        assert {marker.header.stamp.sec for marker in picture.markers} == {place + 1 - 2}
+        [shown] = {marker.header.stamp.sec for marker in picture.markers}
+        assert 3 <= place + 1 - shown <= 12
+    direct.cost = 0.0
+    before = direct.state()
+    assert [direct.state() for _ in range(3)] == [before + 1, before + 2, before + 3]
+
+
+def test_no_state_waits_for_the_whole_picture_of_a_large_robot(client):
+    direct = Direct(client)
+    direct.robot = Robot(RobotModel.from_urdf(chain([1.0] * 120)), ())
+    direct.state()
+    direct.cost = 0.001
+    for after in (0.01, 0.1, 10.0):
+        before = len(direct.published)
+        while len(direct.published) == before:
+            begun = direct.time + after
+            direct.state(after=after)
+            assert direct.time - begun <= min(SHARE * after, LONGEST) * 1.2 + 5 * direct.cost
 
 
 def test_a_picture_that_was_begun_is_dropped_when_nobody_listens_any_more(client):
     direct = Direct(client)
     assert [direct.state(), direct.state()] == [0, 1]
-    # The first step of the next one: it would be over after two more.
-    assert direct.state(after=PRESSING / 2) == 1
-    while direct.time < 2.0 + PERIOD:
-        direct.state(after=PRESSING / 2)
-    before = len(direct.published)
+    direct.cost = 1.0  # one step after each state
+    begun = direct.state()
+    assert begun == 1
+    direct.state()
     for is_wanted in (False, True):
         direct.unit._is_wanted = is_wanted
-        assert direct.state(after=PRESSING / 2) == before
+        assert direct.state() == begun
         assert direct.unit.is_on == is_wanted
     assert direct.changes == 3
-    assert direct.state(after=PRESSING / 2) == before  # nothing was left over
+    assert direct.state() == begun
+    direct.cost = 0.0
+    direct.state()
+    shown = {marker.header.stamp.sec for marker in marker_writer.deserialize_message(
+        direct.published[-1], MarkerArray).markers}
+    assert len(direct.published) == begun + 1 and shown == {0}
+
+
+def test_what_cannot_be_drawn_is_said_once_in_a_while(client, capfd):
+    direct = Direct(client)
+    direct.state()
+    direct.unit._view_of(direct.robot).picture.parts = lambda *_: iter((None,))  # as none is
+    capfd.readouterr()
+    for _ in range(40):
+        assert direct.state(after=COMPLAIN_EVERY / 20) == 0
+    assert capfd.readouterr().err.count('Traceback') in (2, 3)
 
 
 def test_without_its_bytes_rclpy_writes_the_message(client, monkeypatch):

@@ -6,7 +6,7 @@ from dynamics_node import RobotModel
 from dynamics_node.output import OutputChannel, StampTolerance
 from dynamics_node.output.channel import OutputSettings
 from dynamics_node.ros.robot import Robot
-from dynamics_node.ros.state_input import StateInput
+from dynamics_node.ros.state_input import StateInput, WARN_EVERY
 import pytest
 from sensor_msgs.msg import JointState
 from support.processes import Client
@@ -146,3 +146,10 @@ def test_what_cannot_be_read_is_not_counted_as_skipped_besides(client):
         assert receiver.input.skipped == before
     finally:
         receiver.client.close()
+
+
+def test_an_arm_that_rests_beyond_its_limit_does_not_fill_the_log(client, receiver):
+    until_received(client, receiver, 1.25)
+    client.during(1.5 * WARN_EVERY, lambda: client.publish(['hinge'], [1.25]))
+    receiver.spin()
+    assert sum('beyond the position limits' in text for text in receiver.warnings) == 1

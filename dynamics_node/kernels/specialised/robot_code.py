@@ -126,6 +126,7 @@ def _loaded_everywhere(numbers):
     factor = np.linspace(1.0, 2.0, len(body))
     body[:, closed_form.INERTIA:closed_form.MULTIPLIER] *= factor[:, None]
     body[:, closed_form.ROTOR] *= factor
+    loaded.flags.writeable = False  # a type that is compiled already
     return loaded
 
 

@@ -70,7 +70,7 @@ def page(report):
             f'<title>{text(report.robot)}: model report</title>\n'
             f'<style>\n{_file("style.css")}</style>\n</head>\n<body>\n'
             f'{summary(report)}\n{_navigation(report, bool(data))}\n'
-            f'<main>\n{sections}\n</main>\n{_foot(report)}\n{blob}'
+            f'<main>\n{sections}\n</main>\n{_foot(report, bool(data))}\n{blob}'
             + '\n'.join(f'<script>{script}</script>' for script in scripts)
             + '\n</body>\n</html>\n')
 
@@ -145,7 +145,7 @@ def _section(identifier, title, lead, content):
             f'{content}</section>')
 
 
-def _foot(report):
+def _foot(report, is_drawn):
     how = ''
     if report.payload is not None:
         how = (f'Worst torques: {count(report.samples, "pose")} drawn evenly within the limits '
@@ -153,4 +153,6 @@ def _foot(report):
     root = f'Base frame: {span(report.root)}. ' if report.root else ''
     return (f'<footer>{how}Gravity {text(vector(report.gravity))} m/s² '
             f'({text(number(sum(value**2 for value in report.gravity)**0.5))}). {root}'
-            'Made by dynamics_node; this page asks the network for nothing.</footer>')
+            'Made by dynamics_node; this page asks the network for nothing.'
+            + (' Plots: plotly.js, © Plotly, Inc., MIT licence.' if is_drawn else '')
+            + '</footer>')

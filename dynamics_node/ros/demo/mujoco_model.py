@@ -26,7 +26,8 @@ def compile_model(text: str, joints: list[MovableJoint]) -> mujoco.MjModel:
         if isinstance(error, RobotRefusedError):
             raise
         reason = ' '.join(str(error).split())
-        raise RobotRefusedError(f'MuJoCo cannot simulate this robot: {reason}') from error
+        raise RobotRefusedError(f'MuJoCo cannot simulate this robot: {reason}; what is wrong with '
+                                'its links says python -m dynamics_node.report') from error
 
 
 def mimic_map(joints: list[MovableJoint]) -> tuple[np.ndarray, np.ndarray]:
