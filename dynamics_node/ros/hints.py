@@ -43,7 +43,7 @@ class Hints:
         self._now = now
         self._start = now()
         self._due = Throttle(REPEAT_EVERY, now)
-        self._rejected = Counter()  # before joints began to be missing
+        self._rejected: Counter = Counter()  # before joints began to be missing
 
     def give(self):
         """Log what is missing and what to type, if something is missing for too long."""
