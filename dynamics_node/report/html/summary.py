@@ -35,7 +35,9 @@ def _verdict(report):
     if report.verdict == 'refused':
         return 'refused', 'problem'
     worst = next((severity for severity, amount in report.counts.items() if amount), 'good')
-    if worst in ('problem', 'warning'):
+    if worst == 'problem':
+        return f'not to be trusted: {count(report.counts[worst], worst)}', worst
+    if worst == 'warning':
         return f'usable, with {count(report.counts[worst], worst)}', worst
     return 'usable', 'good'
 

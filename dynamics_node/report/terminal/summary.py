@@ -3,9 +3,9 @@
 from rich.console import Console
 from rich.text import Text
 
-from .terminal_findings import findings
-from .terminal_joints import gravity_table, joint_table, mimic_line, payload_lines
-from .terminal_links import body_table, frames_line, link_table
+from .findings import findings
+from .joints import gravity_table, joint_table, mimic_line, payload_lines
+from .links import body_table, frames_line, link_table
 
 _COLOURS = {'problem': 'bold red', 'warning': 'yellow', 'note': 'cyan'}
 
@@ -74,6 +74,7 @@ def _summary(report):
     said = ', '.join(f'{count} {severity}{"" if count == 1 else "s"}'
                      for severity, count in counts.items())
     worst = next((severity for severity, count in counts.items() if count), None)
-    verdict = {'usable': 'usable', 'refused': 'refused: RobotModel and the node do not take it'}
+    verdict = ('refused: RobotModel and the node do not take it' if report.verdict == 'refused'
+               else 'not to be trusted' if worst == 'problem' else 'usable')
     style = 'bold green' if worst in (None, 'note') else _COLOURS[worst]
-    return Text(f'{report.robot}: {verdict[report.verdict]}; {said}', style=style)
+    return Text(f'{report.robot}: {verdict}; {said}', style=style)

@@ -4,8 +4,8 @@ import math
 
 from rich.text import Text
 
-from .terminal_links import table
-from .terminal_numbers import short, vector
+from .links import table
+from .numbers import short, vector
 
 # From this width on, and up to so many joints, the worst position is shown.
 _WIDE, _FEW = 110, 9

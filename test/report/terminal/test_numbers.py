@@ -2,7 +2,7 @@
 
 import math
 
-from dynamics_node.report.terminal_numbers import fixed, short, shorts, vector
+from dynamics_node.report.terminal.numbers import fixed, short, shorts, vector
 
 
 def test_three_digits():

@@ -4,7 +4,7 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
-from .terminal_numbers import short, shorts, vector
+from .numbers import short, shorts, vector
 
 # Frames that are named before the rest is only counted.
 _FRAMES = 12
