@@ -25,7 +25,7 @@ def distribution_figure(joints):
     Returns
     -------
     dict
-        As of `html_plot_worst.worst_figure`.
+        As of `plot_worst.worst_figure`.
 
     """
     limited = [place for place, joint in enumerate(joints)
