@@ -18,8 +18,8 @@ STREET = {
     'dynamics': {'errors', 'inertia', 'urdf', 'model', 'kernels'},
     'report': {'errors', 'inertia', 'urdf', 'model', 'dynamics'},
     'drawing': {'errors', 'inertia', 'model', 'dynamics'},
-    'output': {'errors'},
-    'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'drawing', 'output'},
+    'safety': {'errors'},
+    'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'drawing', 'safety'},
 }
 # llvmlite is numba's compiler and comes with it.
 LIBRARY = {'numpy', 'numba', 'llvmlite', 'yourdfpy', 'scipy'}

@@ -3,8 +3,8 @@
 from pathlib import Path
 import re
 
-from dynamics_node.output import channel, joint_state_buffer, motion_limits, stamps
 from dynamics_node.ros import controller_check, main, node
+from dynamics_node.safety import channel, joint_state_buffer, motion_limits, stamps
 import pytest
 
 TESTS = Path(__file__).parent

@@ -14,17 +14,17 @@ from .hints import unheard
 from .messages import to_field
 from .qos import COMMAND, NO_EVENTS, OUTPUT_STATE
 from .throttle import Throttle
-from ..output import OutputChannel
-from ..output.channel import OutputSettings, STOP_STEP
+from ..safety import EffortOutput
+from ..safety.effort_output import OutputSettings, STOP_STEP
 
 
 class CommandOutput:
     """
-    Connects an `OutputChannel` to ROS.
+    Connects an `EffortOutput` to ROS.
 
     Attributes
     ----------
-    channel : OutputChannel
+    channel : EffortOutput
     commands : int
         Commands published so far.
 
@@ -56,7 +56,7 @@ class CommandOutput:
             event_callbacks=NO_EVENTS)
         self._state_publisher = node.create_publisher(OutputStateMessage, '~/state', OUTPUT_STATE,
                                                       event_callbacks=NO_EVENTS)
-        self.channel = OutputChannel(self._settings(), self._changed)
+        self.channel = EffortOutput(self._settings(), self._changed)
         # On the steady clock: it must watch while simulation time stands still.
         self._watchdog = node.create_timer(STOP_STEP, self._tick,
                                            clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -105,7 +105,7 @@ class CommandOutput:
             self.logger.warning('effort_limits are above those of the URDF: ' + '; '.join(above))
 
     def stop(self, reason, is_fault=False, within=None):
-        """Begin to stop; see `OutputChannel.stop`."""
+        """Begin to stop; see `EffortOutput.stop`."""
         self.channel.stop(time.monotonic(), reason, is_fault, within)
 
     def fault(self, reason):

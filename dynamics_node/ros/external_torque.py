@@ -11,7 +11,7 @@ from .qos import NO_EVENTS, RESULT
 from .throttle import Throttle
 from ..dynamics import MomentumObserver
 from ..dynamics.momentum_observer import LONGEST_STEP
-from ..output import EffortAtRest
+from ..safety import EffortAtRest
 
 # The shortest time between two warnings about the same thing, s.
 WARN_EVERY = 10.0

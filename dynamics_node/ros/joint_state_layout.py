@@ -2,8 +2,8 @@
 
 import struct
 
-from ..output import RejectedStateError
-from ..output.joint_state_buffer import MAX_NAMES, too_many_names
+from ..safety import RejectedStateError
+from ..safety.joint_state_buffer import MAX_NAMES, too_many_names
 
 # Plain CDR: what ROS 2 middlewares send. The others are for types that can grow.
 _COUNTS = {b'\x00\x00': struct.Struct('>I'), b'\x00\x01': struct.Struct('<I')}

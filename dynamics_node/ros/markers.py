@@ -43,7 +43,7 @@ class Markers:
         ----------
         node : rclpy.node.Node
         parameters : Parameters
-        channel : OutputChannel
+        channel : EffortOutput
             Whose command is shown where joint_states has no effort.
         on_change : callable()
             Called when `is_on` has changed.

@@ -28,7 +28,7 @@ from .throttle import Throttle
 from .trajectory_services import TrajectoryServices
 from ..dynamics import RobotModel
 from ..errors import DynamicsError
-from ..output import StampTolerance
+from ..safety import StampTolerance
 
 # How often the node looks for other sources of efforts and states while output is on, s.
 RIVALS_EVERY = 0.2

@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from ..dynamics.friction import SMOOTHING_VELOCITY
-from ..output.channel import STOP_BEHAVIORS
+from ..safety.effort_output import STOP_BEHAVIORS
 
 MAX_GRAVITY = 20.0
 DOUBLE, DOUBLES, TEXT, TEXTS, FLAG = 'double', 'double[]', 'string', 'string[]', 'bool'

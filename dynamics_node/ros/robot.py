@@ -5,7 +5,7 @@ import numpy as np
 from .model_settings import configured
 from ..dynamics import JointSelection
 from ..errors import DynamicsError
-from ..output import JointStateBuffer, MotionLimits
+from ..safety import JointStateBuffer, MotionLimits
 
 
 class StateUnavailableError(DynamicsError):

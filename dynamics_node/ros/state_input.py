@@ -9,7 +9,7 @@ from .guard import guarded
 from .joint_state_reader import JointStateReader
 from .qos import joint_states, NO_SUBSCRIPTION_EVENTS
 from .throttle import Throttle
-from ..output import RejectedStateError, take_state
+from ..safety import RejectedStateError, take_state
 
 # The shortest time between two warnings about the same thing, s.
 WARN_EVERY = 1.0
@@ -41,7 +41,7 @@ class StateInput:
         node : rclpy.node.Node
         parameters : Parameters
         get_robot : callable() -> Robot or None
-        channel : OutputChannel
+        channel : EffortOutput
             Stopped if the states say that the arm must not be driven.
         listener : object
             With `on_state(robot, now, stamp)` for every usable state, and

@@ -4,16 +4,16 @@ from array import array
 from itertools import count
 import math
 
-from dynamics_node.output import (
+from dynamics_node.ros.joint_state_reader import JointStateReader
+from dynamics_node.safety import (
+    EffortOutput,
     JointStateBuffer,
-    OutputChannel,
     RejectedStateError,
     take_state,
 )
-from dynamics_node.output.channel import OutputSettings
-from dynamics_node.output.joint_state_buffer import MAX_NAMES
-from dynamics_node.output.motion_limits import MotionLimits
-from dynamics_node.ros.joint_state_reader import JointStateReader
+from dynamics_node.safety.effort_output import OutputSettings
+from dynamics_node.safety.joint_state_buffer import MAX_NAMES
+from dynamics_node.safety.motion_limits import MotionLimits
 import numpy as np
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.serialization import deserialize_message
@@ -106,7 +106,7 @@ def _receive(reader, buffer, data, clock):
     stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
     now = clock * 1e-9
     # Driven, so that what must stop an arm is heard of.
-    channel = OutputChannel(OutputSettings(_TIMEOUT, 0.0, 0.0, 'ramp_to_zero'))
+    channel = EffortOutput(OutputSettings(_TIMEOUT, 0.0, 0.0, 'ramp_to_zero'))
     channel.enable(now)
     try:
         is_usable = take_state(buffer, channel, now, message.name, message.position,

@@ -13,8 +13,8 @@ import random
 import socket
 from unittest import mock
 
-from dynamics_node.output import JointStateBuffer, RejectedStateError
 from dynamics_node.ros import joint_state_reader
+from dynamics_node.safety import JointStateBuffer, RejectedStateError
 from dynamics_node.urdf import read
 import numpy as np
 

@@ -5,10 +5,10 @@ import time
 from types import SimpleNamespace
 
 from dynamics_node import RobotModel
-from dynamics_node.output import OutputChannel
-from dynamics_node.output.channel import OutputSettings
 from dynamics_node.ros.enabling import Enabling
 from dynamics_node.ros.robot import Robot
+from dynamics_node.safety import EffortOutput
+from dynamics_node.safety.effort_output import OutputSettings
 import numpy as np
 import pytest
 from support.robots import PENDULUM
@@ -20,7 +20,7 @@ class Output:
     topic = '/efforts'
 
     def __init__(self):
-        self.channel = OutputChannel(OutputSettings(0.5, 1.0, 1.0, 'ramp_to_zero'))
+        self.channel = EffortOutput(OutputSettings(0.5, 1.0, 1.0, 'ramp_to_zero'))
         self.channel.set_limiter(np.ones(1), np.ones(1), np.ones(1))
         self.begun = []
 

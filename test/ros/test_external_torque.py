@@ -8,9 +8,9 @@ import types
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamics_node import RobotModel
-from dynamics_node.output import RejectedStateError
 from dynamics_node.ros.external_torque import ExternalTorque
 from dynamics_node.ros.robot import Robot
+from dynamics_node.safety import RejectedStateError
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue

@@ -3,10 +3,10 @@
 from types import SimpleNamespace
 
 from dynamics_node import RobotModel
-from dynamics_node.output import RejectedStateError
 from dynamics_node.ros.description_source import DescriptionSource
 from dynamics_node.ros.hints import Hints, PATIENCE, REPEAT_EVERY, unheard
 from dynamics_node.ros.robot import Robot
+from dynamics_node.safety import RejectedStateError
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Log

@@ -2,10 +2,10 @@
 
 import struct
 
-from dynamics_node.output import RejectedStateError
-from dynamics_node.output.joint_state_buffer import MAX_NAMES
 from dynamics_node.ros.joint_state_layout import end_of_names
 from dynamics_node.ros.joint_state_reader import JointStateReader
+from dynamics_node.safety import RejectedStateError
+from dynamics_node.safety.joint_state_buffer import MAX_NAMES
 import pytest
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState

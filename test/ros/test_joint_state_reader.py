@@ -1,9 +1,9 @@
 """Joint states read from bytes are those that rclpy reads."""
 
-from dynamics_node.output import RejectedStateError
-from dynamics_node.output.joint_state_buffer import MAX_NAMES
 from dynamics_node.ros import joint_state_reader
 from dynamics_node.ros.joint_state_reader import JointStateReader
+from dynamics_node.safety import RejectedStateError
+from dynamics_node.safety.joint_state_buffer import MAX_NAMES
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest

@@ -3,10 +3,10 @@
 from types import SimpleNamespace
 
 from dynamics_node import RobotModel
-from dynamics_node.output import OutputChannel, StampTolerance
-from dynamics_node.output.channel import OutputSettings
 from dynamics_node.ros.robot import Robot
 from dynamics_node.ros.state_input import StateInput, WARN_EVERY
+from dynamics_node.safety import EffortOutput, StampTolerance
+from dynamics_node.safety.effort_output import OutputSettings
 import pytest
 from sensor_msgs.msg import JointState
 from support.processes import Client
@@ -24,7 +24,7 @@ class Receiver:
         self.robot = Robot(RobotModel.from_urdf(LIMITED), ())
         # A busy machine may take its time from one process to the other.
         self.robot.buffer.tolerance = StampTolerance(5.0)
-        self.channel = OutputChannel(OutputSettings(0.5, 0.0, 0.0, 'ramp_to_zero'))
+        self.channel = EffortOutput(OutputSettings(0.5, 0.0, 0.0, 'ramp_to_zero'))
         self.received, self.errors, self.warnings = [], [], []
         node = self.client.node
         node.destroy_publisher(self.client.states)

@@ -2,8 +2,8 @@
 
 import math
 
-from dynamics_node.output import OutputChannel
-from dynamics_node.output.channel import (
+from dynamics_node.safety import EffortOutput
+from dynamics_node.safety.effort_output import (
     LONGEST_SATURATION,
     MAX_RESTARTS,
     OutputSettings,
@@ -21,7 +21,7 @@ TORQUE = np.array([4.0, -2.0])
 
 def channel(stop_behavior='ramp_to_zero', limits=LIMITS, **changes):
     settings = {'state_timeout': 0.1, 'start_ramp': 0.5, 'stop_ramp': 1.0, **changes}
-    unit = OutputChannel(OutputSettings(stop_behavior=stop_behavior, **settings))
+    unit = EffortOutput(OutputSettings(stop_behavior=stop_behavior, **settings))
     unit.set_limiter(limits, RATES, np.ones(2))
     return unit
 

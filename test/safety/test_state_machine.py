@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from dynamics_node.output import OutputState, OutputStateMachine
+from dynamics_node.safety import OutputState, OutputStateMachine
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .limiter import EffortLimiter, InvalidEffortError
+from .effort_limiter import EffortLimiter, InvalidEffortError
 from .state_machine import OutputState, OutputStateMachine
 
 # How often a stop sends its next command, and the shortest time between two looks, s.
@@ -40,7 +40,7 @@ class OutputSettings:
     stop_behavior: str
 
 
-class OutputChannel:
+class EffortOutput:
     """
     Decides for every model effort and every tick whether a command goes out, and which.
 

@@ -12,7 +12,7 @@ def take_state(buffer, channel, now, names, positions, velocities=(), stamp=0, c
     Parameters
     ----------
     buffer : JointStateBuffer
-    channel : OutputChannel
+    channel : EffortOutput
     now : float
         Arrival on the steady clock, s.
     names, positions, velocities, stamp, clock, efforts

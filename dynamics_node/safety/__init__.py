@@ -8,18 +8,26 @@ publish an effort that did not pass `EffortLimiter`.
 
 """
 
-from .channel import OutputChannel
 from .effort_at_rest import EffortAtRest
+from .effort_limiter import EffortLimiter, InvalidEffortError
+from .effort_output import EffortOutput
 from .intake import take_state
 from .joint_state_buffer import JointStateBuffer
-from .limiter import EffortLimiter, InvalidEffortError
 from .motion_limits import MotionLimits
 from .rejected import RejectedStateError
 from .stamps import StampTolerance
 from .state_machine import OutputState, OutputStateMachine
 
 __all__ = [
-    'EffortAtRest', 'EffortLimiter', 'InvalidEffortError', 'JointStateBuffer', 'MotionLimits',
-    'OutputChannel', 'OutputState', 'OutputStateMachine', 'RejectedStateError', 'StampTolerance',
+    'EffortAtRest',
+    'EffortLimiter',
+    'EffortOutput',
+    'InvalidEffortError',
+    'JointStateBuffer',
+    'MotionLimits',
+    'OutputState',
+    'OutputStateMachine',
+    'RejectedStateError',
+    'StampTolerance',
     'take_state',
 ]

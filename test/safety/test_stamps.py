@@ -1,6 +1,6 @@
 """Stamps against the clock: what can be true, and what is said of the rest."""
 
-from dynamics_node.output import RejectedStateError, StampTolerance
+from dynamics_node.safety import RejectedStateError, StampTolerance
 import pytest
 
 SECOND = 1_000_000_000

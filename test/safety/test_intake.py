@@ -2,15 +2,15 @@
 
 import math
 
-from dynamics_node.output import (
+from dynamics_node.safety import (
+    EffortOutput,
     JointStateBuffer,
     MotionLimits,
-    OutputChannel,
     RejectedStateError,
     StampTolerance,
     take_state,
 )
-from dynamics_node.output.channel import OutputSettings
+from dynamics_node.safety.effort_output import OutputSettings
 from hypothesis import example, given, note
 from hypothesis import strategies as st
 import numpy as np
@@ -28,7 +28,7 @@ class Path:
         self.buffer = JointStateBuffer(NAMES, NAMES, np.zeros(2), MotionLimits(
             NAMES, np.full(2, 3.0), np.tile([-3.0, 3.0], (2, 1)), np.zeros(2, dtype=bool)),
             StampTolerance(0.1))
-        self.channel = OutputChannel(OutputSettings(0.1, 0.5, 1.0, behavior))
+        self.channel = EffortOutput(OutputSettings(0.1, 0.5, 1.0, behavior))
         self.channel.set_limiter(LIMITS, RATES, np.ones(2), NAMES)
 
     def take(self, now, position, velocity=(), stamp=None, names=NAMES, clock=None):

@@ -2,8 +2,8 @@
 
 import math
 
-from dynamics_node.output import MotionLimits
-from dynamics_node.output.motion_limits import SHORTEST_STEP, VELOCITY_MARGIN
+from dynamics_node.safety import MotionLimits
+from dynamics_node.safety.motion_limits import SHORTEST_STEP, VELOCITY_MARGIN
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np

@@ -3,13 +3,13 @@
 import contextlib
 import math
 
-from dynamics_node.output import (
+from dynamics_node.safety import (
     JointStateBuffer,
     MotionLimits,
     RejectedStateError,
     StampTolerance,
 )
-from dynamics_node.output.joint_state_buffer import MAX_JUMPS, MAX_NAMES
+from dynamics_node.safety.joint_state_buffer import MAX_JUMPS, MAX_NAMES
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np

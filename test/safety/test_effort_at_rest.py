@@ -2,7 +2,7 @@
 
 import math
 
-from dynamics_node.output import EffortAtRest
+from dynamics_node.safety import EffortAtRest
 import numpy as np
 import pytest
 

@@ -1,6 +1,6 @@
 """The limiter: whatever comes in, what goes out is finite, limited and one step away."""
 
-from dynamics_node.output import EffortLimiter, InvalidEffortError
+from dynamics_node.safety import EffortLimiter, InvalidEffortError
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
