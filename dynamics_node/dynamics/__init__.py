@@ -5,6 +5,7 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 
 """
 
+from .compensation import Compensation
 from .friction import Friction
 from .held_joints import forward_dynamics_held
 from .joint_selection import JointSelection
@@ -17,6 +18,6 @@ from .robot_model import RobotModel
 from .terms import DynamicsTerms
 from .trajectory import complete_trajectory, Trajectory
 
-__all__ = ['DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload', 'MomentumObserver',
-           'OverLimit', 'Payload', 'RobotModel', 'Trajectory', 'complete_trajectory',
-           'forward_dynamics_held', 'one_off_model', 'over_limit']
+__all__ = ['Compensation', 'DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload',
+           'MomentumObserver', 'OverLimit', 'Payload', 'RobotModel', 'Trajectory',
+           'complete_trajectory', 'forward_dynamics_held', 'one_off_model', 'over_limit']

@@ -59,6 +59,7 @@ def build_tree(description):
                        for joint in free], (4,)),
         friction=_friction(moving, resolved, index),
         warnings=description.warnings + _massless(moving, inertia),
+        hardware_plugins=description.hardware_plugins,
     )
     _refuse_overflow(tree)
     return tree

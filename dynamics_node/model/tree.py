@@ -68,6 +68,8 @@ class KinematicTree:
         of the joints that mimic it; 0 if the URDF states none.
     warnings : tuple of str
         What was accepted but looks wrong.
+    hardware_plugins : tuple of str
+        Drivers that the `<ros2_control>` tags of the URDF name.
 
     """
 
@@ -87,6 +89,7 @@ class KinematicTree:
     limits: np.ndarray
     friction: np.ndarray
     warnings: tuple
+    hardware_plugins: tuple = ()
 
     def __post_init__(self):
         for value in vars(self).values():

@@ -1,11 +1,9 @@
 """Which changes of model and limits may reach an arm that the output holds."""
 
-import numpy as np
-
 from .parameter_table import ParameterError
 
 
-def check_change(robot, model, values, before):
+def check_change(robot, model, values, before, gravity_change, now):
     """
     Refuse a change that would throw or drop the arm while the output is on.
 
@@ -17,19 +15,29 @@ def check_change(robot, model, values, before):
         As it would become.
     values, before : dict of str to Any
         Of the parameters, as they would become and as they are.
+    gravity_change : GravityChange
+        What gravity has done since the output was enabled.
+    now : float
+        Steady clock, s.
 
     Raises
     ------
     ParameterError
-        If a chosen joint would have no effort limit, gravity would turn by 90 degrees or more,
-        or gravity torque would bring a joint to its limit that is not there yet.
+        If a chosen joint would have no effort limit, a limit would be above the URDF's, gravity
+        would point up or turn too fast, or gravity torque would bring a joint to its limit that
+        is not there yet.
 
     """
     unlimited = robot.unlimited_joints(values['effort_limits'])
     if unlimited:
         raise ParameterError('effort_limits: expected a limit for every joint while output is on, '
                              f'got none for {", ".join(unlimited)}')
-    _check_gravity(values['gravity'], before['gravity'])
+    above = robot.above_urdf(values)
+    if above and not values['allow_limits_above_urdf'] and above != robot.above_urdf(before):
+        raise ParameterError('expected limits within those of the URDF while output is on, got '
+                             f'{above}: set allow_limits_above_urdf first')
+    if values['gravity'] != before['gravity']:
+        _check_gravity(values, gravity_change, now)
     if model is robot.model and values['effort_scale'] == before['effort_scale']:
         return  # lower limits are always possible
     over = robot.over_limits(values, model, before)
@@ -38,15 +46,12 @@ def check_change(robot, model, values, before):
                              f'gravity torque would be above the limit: {over}')
 
 
-def _check_gravity(gravity, before):
-    # Zero has no direction: from there every other one would be possible.
-    if gravity == before or np.dot(gravity, before) > 0.0:
-        return
-    if not any(gravity) or not any(before):
-        raise ParameterError('gravity: expected a vector that is not zero while output is on, got '
-                             f'{list(before)} -> {list(gravity)}: disable it first, or leave '
-                             'gravity out of the command by compensate.gravity')
-    # What an accelerometer at rest says is the opposite of gravity.
-    raise ParameterError('gravity: expected a vector that points to the earth, got one that is '
-                         'turned by 90 degrees or more against the one in force: while output is '
-                         'on, this would throw the arm')
+def _check_gravity(values, gravity_change, now):
+    gravity = values['gravity']
+    if gravity[2] > 0.0 and not values['allow_upward_gravity']:
+        raise ParameterError(f'gravity: expected a vector that points to the earth, got '
+                             f'{list(gravity)}, which points up in the frame of the root link: '
+                             'if the arm hangs from a ceiling, set allow_upward_gravity')
+    refusal = gravity_change.refusal(now, gravity)
+    if refusal:
+        raise ParameterError(f'gravity: {refusal}')

@@ -19,7 +19,7 @@ def parse(arguments):
     Returns
     -------
     argparse.Namespace
-        executor : str, a key of EXECUTORS. raw_states : bool.
+        executor : str, one of EXECUTORS. raw_states : bool.
 
     """
     return parser().parse_known_args(remove_ros_args(arguments)[1:])[0]
@@ -35,9 +35,9 @@ def parser():
 
     """
     options = argparse.ArgumentParser(description='Robot dynamics as a ROS 2 node.')
-    options.add_argument('--executor', choices=sorted(EXECUTORS), default='lean',
-                        help="rclpy: rclpy's SingleThreadedExecutor; lean: the same for less "
-                        'processor time, resting on the inside of rclpy 7.1')
+    options.add_argument('--executor', choices=EXECUTORS, default='rclpy',
+                        help="rclpy: rclpy's SingleThreadedExecutor; events: its EventsExecutor, "
+                        'experimental, refused where a self-test at start fails')
     options.add_argument('--raw-states', action=argparse.BooleanOptionalAction, default=True,
                         help='read joint_states from the bytes on the wire: less time from '
                         'state to command')

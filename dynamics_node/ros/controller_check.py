@@ -1,33 +1,47 @@
-"""Asks whoever listens to the commands whether it takes them for what they are."""
+"""The listeners of the command topic: which joints they drive, and whether they are active."""
 
-import time
-
+from lifecycle_msgs.msg import State, TransitionEvent
+from lifecycle_msgs.srv import GetState
 from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters
-from rclpy.clock import Clock, ClockType
+from rclpy.qos import QoSProfile
 
-from .guard import logged
+from .qos import NO_SUBSCRIPTION_EVENTS
 
-# How often it is looked whether all have answered, s.
-STEP = 0.02
-# How long a listener's parameter service may take to be found and to answer, s.
+try:  # part of ros2_control: on a robot with controllers it is there
+    from controller_manager_msgs.srv import ListControllers
+except ImportError:
+    ListControllers = None
+
+# How long a listener's services may take to be found and to answer, s.
 ANSWER_WITHIN = 1.0
+# What rmw reports of a node that has been discovered in part.
+UNKNOWN_NAME = '_NODE_NAME_UNKNOWN_'
+EVENTS = QoSProfile(depth=10)
+PARAMETERS = ('joints', 'interface_name')
 
 
-class ControllerCheck:
+class Controllers:
     """
-    Compares joints and interface of the effort controller with what the node sends.
+    Compares the controllers on the command topic with what the node sends, again and again.
 
     An array of efforts says nothing about its joints: a controller with another order gives
     every joint the effort of another one, and one for positions takes efforts for angles. The
-    controllers of ros2_control state both as parameters, `joints` and `interface_name`; a
-    listener without them is taken to know what it does.
+    controllers of ros2_control state both as parameters, `joints` and `interface_name`, and
+    publish their lifecycle on `transition_event`. A listener without these parameters is trusted.
+
+    Attributes
+    ----------
+    listeners : dict of str to Listener
+        Fully qualified name → what is known of it.
+    has_unnamed : bool
+        Whether discovery knows a listener whose name it does not know yet.
 
     """
 
     def __init__(self, node, topic):
         """
-        Check the listeners of a topic, whenever `begin` is called.
+        Watch the listeners of a topic, whenever `update` is called.
 
         Parameters
         ----------
@@ -36,95 +50,119 @@ class ControllerCheck:
             Resolved name of the command topic.
 
         """
-        self.logger = node.get_logger()
         self._node = node
         self._topic = topic
-        self._questions = []
-        self._timer = node.create_timer(STEP, self._look,
-                                        clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self._timer.cancel()
+        self.listeners: dict[str, Listener] = {}
+        self.has_unnamed = False
 
-    @property
-    def is_busy(self):
-        """Whether answers are being waited for."""
-        return bool(self._questions)
+    def update(self):
+        """Look who listens, ask newcomers, and read what has been answered."""
+        names = self._names()
+        for name in set(self.listeners) - names:
+            self.listeners.pop(name).close()
+        for name in names - set(self.listeners):
+            self.listeners[name] = Listener(self._node, name)
+        for listener in self.listeners.values():
+            listener.update()
 
-    def begin(self, joint_names, on_done):
+    def ask_again(self):
+        """Forget what the listeners have answered: their parameters may have changed."""
+        for listener in self.listeners.values():
+            listener.ask_again()
+
+    def is_waiting(self):
+        """Whether a listener has yet to be named or to answer."""
+        return self.has_unnamed or any(not item.has_answered for item in self.listeners.values())
+
+    def refusals(self, joint_names):
         """
-        Ask every listener.
+        Return what the listeners say against driving them.
 
         Parameters
         ----------
         joint_names : sequence of str
             In the order of the command.
-        on_done : callable(refusals, notes)
-            Called once, from a callback or at once: two lists of str.
+
+        Returns
+        -------
+        list of str
 
         """
-        self._joint_names = list(joint_names)
-        self._on_done = on_done
-        self._begun = time.monotonic()
-        self._questions = [_Question(self._node, name) for name in self._listeners()]
-        if self._questions:
-            self._timer.reset()
-        else:
-            on_done([], [])
+        return [reason for item in self.listeners.values()
+                for reason in item.mismatches(list(joint_names)) + item.inactive()]
 
-    def _listeners(self):
+    def notes(self):
+        """Return what could not be found out, a list of str."""
+        notes = [f'{item.name}, which listens there, did not say within {ANSWER_WITHIN:g} s which '
+                 'joints it drives; it is asked on, and stops the output if it does not fit'
+                 for item in self.listeners.values() if not item.has_answered]
+        if self.has_unnamed:
+            notes.append('a listener there has not been identified yet')
+        return notes
+
+    def has_listener(self):
+        """Whether there is a listener that may be a controller."""
+        return bool(self.listeners) or self.has_unnamed
+
+    def _names(self):
         own = self._node.get_fully_qualified_name()
-        names = {f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-                 for info in self._node.get_subscriptions_info_by_topic(self._topic)
-                 # Command line tools have hidden names and no parameters.
-                 if info.node_name and not info.node_name.startswith('_')}
-        return sorted(names - {own})
-
-    @logged
-    def _look(self):
-        elapsed = time.monotonic() - self._begun
-        for question in self._questions:  # each of them, however long another one takes
-            question.ask()
-        if elapsed < ANSWER_WITHIN and any(item.is_unanswered for item in self._questions):
-            return
-        self._timer.cancel()
-        questions, self._questions = self._questions, []
-        refusals, notes = [], []
-        for question in questions:
-            refusals += question.refusals(self._joint_names)
-            if question.is_unanswered:
-                notes.append(f'{question.name}, which listens there, did not say within '
-                             f'{ANSWER_WITHIN:g} s which joints it drives')
-            question.close()
-        self._on_done(refusals, notes)
+        infos = self._node.get_subscriptions_info_by_topic(self._topic)
+        self.has_unnamed = any(info.node_name in ('', UNKNOWN_NAME) for info in infos)
+        # Other hidden names belong to command line tools, which have no parameters.
+        return {f'{info.node_namespace.rstrip("/")}/{info.node_name}' for info in infos
+                if info.node_name and not info.node_name.startswith('_')} - {own}
 
 
-class _Question:
-    """What one listener is asked."""
+class Listener:
+    """
+    One node that listens to the commands.
+
+    Attributes
+    ----------
+    name : str
+        Fully qualified.
+
+    """
 
     def __init__(self, node, name):
         self.name = name
         self._node = node
-        try:
-            self._client = node.create_client(GetParameters, f'{name}/get_parameters')
-        except Exception as error:  # DDS security may forbid it
-            self._client = None
-            node.get_logger().warning(f'{name} cannot be asked for its joints: {error}')
-        self._answers = {}
+        self._clients: dict = {}
+        self._answers: dict = {}
+        self._state_answer = self._list_answer = None
+        self._events = None
+        self._state: int | None = None
 
-    def ask(self):
-        """Ask, as soon as that is possible."""
-        if self._answers or self._client is None or not self._client.service_is_ready():
-            return
-        # One at a time: rclcpp answers nothing at all if one of several does not exist.
-        self._answers = {name: self._client.call_async(GetParameters.Request(names=[name]))
-                         for name in ('joints', 'interface_name')}
+    def update(self):
+        """Ask as soon as that is possible, and read what has been answered."""
+        self._ask_parameters()
+        self._ask_state()
+        if self.has_answered:
+            self._release()  # every client costs time in every wait of the executor
+        if self._events is None and self._node.count_publishers(f'{self.name}/transition_event'):
+            self._events = self._node.create_subscription(
+                TransitionEvent, f'{self.name}/transition_event', self._changed, EVENTS,
+                event_callbacks=NO_SUBSCRIPTION_EVENTS)
+
+    def ask_again(self):
+        """Forget the answers, but not the lifecycle that was seen to change."""
+        self._answers = {}
+        self._state_answer = self._list_answer = None
 
     @property
-    def is_unanswered(self):
-        """Whether it has not told its parameters yet."""
-        return not self._answers or not all(answer.done() for answer in self._answers.values())
+    def has_answered(self):
+        """Whether its parameters are known, and its lifecycle if it tells that."""
+        answers = [*self._answers.values(), self._state_answer, self._list_answer]
+        return bool(self._answers) and all(
+            answer is None or answer.done() for answer in answers)
 
-    def refusals(self, joint_names):
-        """Return what its parameters say against driving it, as a list of str."""
+    @property
+    def is_controller(self):
+        """Whether it says which joints it drives."""
+        return self._value('joints').type == ParameterType.PARAMETER_STRING_ARRAY
+
+    def mismatches(self, joint_names):
+        """Return what its parameters say against driving it, a list of str."""
         reasons = []
         joints = self._value('joints')
         if joints.type == ParameterType.PARAMETER_STRING_ARRAY:
@@ -142,12 +180,84 @@ class _Question:
                            'command_topic must be that of an effort controller')
         return reasons
 
+    def inactive(self):
+        """Return a list with the reason if its lifecycle is known and not active."""
+        state = self._lifecycle()
+        if state is None or state == 'active':
+            return []
+        namespace, _, controller = self.name.rpartition('/')
+        manager = f' -c {namespace}/controller_manager' if namespace else ''
+        return [f'{self.name} is {state}: the efforts would not reach the arm; activate it first, '
+                f'with  ros2 control set_controller_state{manager} {controller} active']
+
+    def close(self):
+        """Ask no more."""
+        self._release()
+        if self._events is not None:
+            self._node.destroy_subscription(self._events)
+            self._events = None
+
+    def _release(self):
+        for client in self._clients.values():
+            self._node.destroy_client(client)
+        self._clients = {}
+
+    def _ask_parameters(self):
+        client = None if self._answers else self._ready(
+            GetParameters, f'{self.name}/get_parameters')
+        if client is not None:
+            # One at a time: rclcpp answers nothing at all if one of several does not exist.
+            self._answers = {name: client.call_async(GetParameters.Request(names=[name]))
+                             for name in PARAMETERS}
+
+    def _ask_state(self):
+        # The lifecycle as the node offers it, or as the controller manager knows it: the
+        # controllers of ros2_control have no get_state of their own.
+        if self._state_answer is None and (
+                client := self._ready(GetState, f'{self.name}/get_state')):
+            self._state_answer = client.call_async(GetState.Request())
+        manager = f'{self.name.rpartition("/")[0]}/controller_manager/list_controllers'
+        if ListControllers is not None and self._list_answer is None and (
+                client := self._ready(ListControllers, manager)):
+            self._list_answer = client.call_async(ListControllers.Request())
+
+    def _ready(self, kind, service):
+        # A client, made only where the service exists; None while it cannot be called.
+        if service not in self._clients:
+            if not self._node.count_services(service):
+                return None
+            self._clients[service] = self._node.create_client(kind, service)
+        client = self._clients[service]
+        return client if client.service_is_ready() else None
+
+    def _lifecycle(self):
+        # What changed last counts more than what was asked earlier.
+        if self._state is not None:
+            return _WORDS.get(self._state, f'in transition {self._state}')
+        if self._state_answer is not None and self._state_answer.done():
+            return self._state_answer.result().current_state.label
+        if self._list_answer is not None and self._list_answer.done():
+            name = self.name.rpartition('/')[2]
+            return next((item.state for item in self._list_answer.result().controller
+                         if item.name == name), None)
+        return None
+
+    def _changed(self, event):
+        self._state = event.goal_state.id
+
     def _value(self, name):
         answer = self._answers.get(name)
         values = answer.result().values if answer is not None and answer.done() else []
         return values[0] if values else ParameterValue()
 
-    def close(self):
-        """Ask no more."""
-        if self._client is not None:
-            self._node.destroy_client(self._client)
+
+_WORDS = {
+    State.PRIMARY_STATE_UNCONFIGURED: 'unconfigured', State.PRIMARY_STATE_INACTIVE: 'inactive',
+    State.PRIMARY_STATE_ACTIVE: 'active', State.PRIMARY_STATE_FINALIZED: 'finalized',
+    State.TRANSITION_STATE_CONFIGURING: 'configuring',
+    State.TRANSITION_STATE_CLEANINGUP: 'being cleaned up',
+    State.TRANSITION_STATE_SHUTTINGDOWN: 'shutting down',
+    State.TRANSITION_STATE_ACTIVATING: 'being activated',
+    State.TRANSITION_STATE_DEACTIVATING: 'being deactivated',
+    State.TRANSITION_STATE_ERRORPROCESSING: 'in error',
+}

@@ -91,7 +91,7 @@ class Diagnostics:
                for kind, count in sorted(buffer.rejected.items())}})
 
     def _command(self):
-        machine, limiter = self._output.channel.machine, self._output.channel.limiter
+        machine, limiter = self._output.path.output.machine, self._output.path.output.limiter
         level, text = DiagnosticStatus.OK, 'on' if machine.is_on else 'off'
         if machine.is_on and limiter.is_saturated:
             level, text = DiagnosticStatus.WARN, f'above the limit: {limiter.saturation()}'
@@ -106,7 +106,7 @@ class Diagnostics:
                 names, limiter.saturations, strict=False)}})
 
     def _state_machine(self):
-        machine = self._output.channel.machine
+        machine = self._output.path.output.machine
         level = {'FAULT': DiagnosticStatus.ERROR, 'STOPPING': DiagnosticStatus.WARN}.get(
             machine.name, DiagnosticStatus.OK)
         return self._status('state machine', level, f'{machine.name}: {machine.reason}', {

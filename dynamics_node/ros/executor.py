@@ -1,30 +1,127 @@
-"""Which executor runs the node's callbacks: rclpy's, or one that costs less."""
+"""Which of rclpy's executors runs the node's callbacks."""
 
+import time
+
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.task import Future
+from std_msgs.msg import Empty
+from std_srvs.srv import Trigger
 
-from .lean_executor import LeanExecutor
+EXECUTORS = ('rclpy', 'events')
+# The self-test of an executor: longest time for all of it, and for a wait in which nothing
+# happens, s; part of the second that may be spent computing.
+TEST_WITHIN = 5.0
+IDLE = 0.2
+BUSY_SHARE = 0.5
 
-EXECUTORS = {'rclpy': SingleThreadedExecutor, 'lean': LeanExecutor}
+
+class UnsoundExecutorError(RuntimeError):
+    """The chosen executor does not do on this computer what the node needs."""
 
 
-def make_executor(choice, logger):
+def make_executor(choice):
     """
-    Make an executor, or rclpy's own where the chosen one does not fit rclpy.
+    Make an executor of rclpy.
 
     Parameters
     ----------
     choice : str
-        A key of EXECUTORS.
-    logger : rclpy.impl.rcutils_logger.RcutilsLogger
-        Hears why it is not the chosen one.
+        One of EXECUTORS.
 
     Returns
     -------
     rclpy.executors.Executor
 
+    Raises
+    ------
+    UnsoundExecutorError
+        If the events executor is not there or fails its self-test.
+
     """
-    try:
-        return EXECUTORS[choice]()
-    except NotImplementedError as error:
-        logger.warning(f"executor {choice} does not work here, rclpy's own is used: {error}")
+    if choice == 'rclpy':
         return SingleThreadedExecutor()
+    try:
+        from rclpy.experimental import EventsExecutor
+    except ImportError as error:
+        raise UnsoundExecutorError(f'--executor events: this rclpy has none ({error}); use '
+                                   '--executor rclpy') from error
+    problem = _self_test(EventsExecutor)
+    if problem:
+        raise UnsoundExecutorError(f'--executor events: its self-test failed ({problem}); use '
+                                   '--executor rclpy')
+    return EventsExecutor()
+
+
+def _self_test(kind):
+    # Returns what does not work, '' if everything does: a timer, a message, a service that
+    # answers late, and a wait that costs nothing.
+    executor = kind()
+    probe = _Probe()
+    try:
+        executor.add_node(probe)
+        end = time.monotonic() + TEST_WITHIN
+        while probe.missing() and time.monotonic() < end:
+            executor.spin_once(timeout_sec=0.05)
+            probe.go_on()
+        if probe.missing():
+            return f'no {" and no ".join(probe.missing())} within {TEST_WITHIN:g} s'
+        probe.rest()
+        begin, computing = time.monotonic(), time.process_time()
+        executor.spin_once(timeout_sec=IDLE)
+        while time.monotonic() - begin < IDLE:
+            executor.spin_once(timeout_sec=IDLE)
+        if time.process_time() - computing > BUSY_SHARE * IDLE:
+            return 'it computes while nothing happens'
+    except Exception as error:
+        return f'{type(error).__name__}: {error}'
+    finally:
+        executor.shutdown()
+        probe.destroy_node()
+    return ''
+
+
+class _Probe(Node):
+    """Uses what the node uses, under a name of its own."""
+
+    def __init__(self):
+        super().__init__('_dynamics_node_executor_test', use_global_arguments=False,
+                         start_parameter_services=False)
+        self._done = {'timer': False, 'message': False, 'late answer': False}
+        self._timer = self.create_timer(0.01, self._ticked)
+        self._publisher = self.create_publisher(Empty, '~/probe', 1)
+        self.create_subscription(Empty, '~/probe', self._heard, 1)
+        self.create_service(Trigger, '~/late', self._answer,
+                            callback_group=ReentrantCallbackGroup())
+        self._client = self.create_client(Trigger, '~/late')
+        self._call = None
+        self._late = Future()
+
+    def missing(self):
+        """Return what has not worked yet, a list of str."""
+        if self._call is not None and self._call.done():
+            self._done['late answer'] = True
+        return [name for name, is_done in self._done.items() if not is_done]
+
+    def go_on(self):
+        """Do what needs a partner as soon as there is one."""
+        self._publisher.publish(Empty())
+        if self._call is None and self._client.service_is_ready():
+            self._call = self._client.call_async(Trigger.Request())
+
+    def rest(self):
+        """Cause nothing any more."""
+        self._timer.cancel()
+
+    def _ticked(self):
+        self._done['timer'] = True
+        if self._call is not None and not self._late.done():
+            self._late.set_result(True)
+
+    def _heard(self, _):
+        self._done['message'] = True
+
+    async def _answer(self, request, response):
+        response.success = await self._late
+        return response

@@ -1,36 +1,45 @@
 """No exception leaves a callback: rclpy would end the process, and the arm would drop."""
 
 import functools
+import time
 import traceback
+
+# An error that keeps coming is logged at most this often per callback, s.
+LOG_EVERY = 1.0
 
 
 def guarded(method):
     """
-    Wrap a callback on the way of the torque, of an object with `logger` and `on_internal_error`.
+    Wrap a callback on the torque path, of an object with `logger` and `on_internal_error`.
 
     An exception is logged with its traceback and handed to `on_internal_error(message)`; the
     callback then returns None.
 
     """
+    log = _ErrorLog(method)
+
     @functools.wraps(method)
     def safe(self, *arguments):
         try:
             return method(self, *arguments)
         except Exception as error:
-            _log(self, method, error)
+            # The stop first: to write a log may take long.
             self.on_internal_error(f'internal error in {method.__name__}: {error}')
+            log(self, error)
             return None
     return safe
 
 
 def logged(method):
-    """Wrap a callback that no torque depends on: an exception is logged, and that is all."""
+    """Wrap a callback that no torque depends on: an exception is only logged."""
+    log = _ErrorLog(method)
+
     @functools.wraps(method)
     def safe(self, *arguments):
         try:
             return method(self, *arguments)
         except Exception as error:
-            _log(self, method, error)
+            log(self, error)
             return None
     return safe
 
@@ -42,15 +51,32 @@ def guarded_service(method):
     An exception is logged; the answer is what `failed(response, message)` makes of a new response.
 
     """
+    log = _ErrorLog(method)
+
     @functools.wraps(method)
     def safe(self, request, response):
         try:
             return method(self, request, response)
         except Exception as error:
-            _log(self, method, error)
+            log(self, error)
             return self.failed(type(response)(), f'internal error: {error}')
     return safe
 
 
-def _log(owner, method, error):
-    owner.logger.error(f'{method.__name__}: {error}\n{traceback.format_exc()}')
+class _ErrorLog:
+    """Logs the errors of one callback, and how many were left out in between."""
+
+    def __init__(self, method):
+        self._name = method.__name__
+        self._next = float('-inf')
+        self._left_out = 0
+
+    def __call__(self, owner, error):
+        now = time.monotonic()
+        if now < self._next:
+            self._left_out += 1
+            return
+        self._next = now + LOG_EVERY
+        more = f' ({self._left_out} more since the last report)' if self._left_out else ''
+        self._left_out = 0
+        owner.logger.error(f'{self._name}: {error}{more}\n{traceback.format_exc()}')

@@ -27,22 +27,9 @@ class JointStateReader:
     """
 
     def __init__(self):
-        """Know no names yet, and read no efforts."""
         self._message = JointState()
         self._names = None
         self._end = 0
-        self._with_effort = False
-
-    @property
-    def with_effort(self):
-        """Whether efforts are read: they take time, and the torque does not need them."""
-        return self._with_effort
-
-    @with_effort.setter
-    def with_effort(self, value):
-        if value != self._with_effort:
-            self._with_effort = value
-            self._names = None  # the next one is read by rclpy: with efforts, or without
 
     def read(self, data):
         """
@@ -56,8 +43,7 @@ class JointStateReader:
         Returns
         -------
         sensor_msgs.msg.JointState
-            Without effort if none is to be read; the same object every time, so it holds until
-            the next call.
+            The same object every time, so it holds until the next call.
 
         Raises
         ------
@@ -75,17 +61,14 @@ class JointStateReader:
                 message, stamp = self._message, self._message.header.stamp
                 stamp.sec, stamp.nanosec = _STAMP.unpack_from(data, ORIGIN)
                 message.position, message.velocity = position, velocity
-                if self._with_effort:
-                    effort, end = _doubles(data, at)
-                    message.effort = effort if end <= len(data) else array('d')
+                effort, end = _doubles(data, at)
+                message.effort = effort if end <= len(data) else array('d')
                 return message
         return self._learn(data)
 
     def _learn(self, data):
         end = end_of_names(data)
         message = deserialize_message(data, JointState)
-        if not self._with_effort:
-            message.effort = []
         self._names = None
         if data[:ORIGIN] == _REPRESENTATION and message.name:
             self._message, self._end, self._names = message, end, data[FRAME:end]

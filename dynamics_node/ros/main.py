@@ -8,18 +8,22 @@ import traceback
 
 from .signals import Signals
 
-# Time that a stop may take after SIGINT or SIGTERM, s; launch kills after 5.
+# Time that a stop may take after the first signal and after the second, s; launch kills after 5.
 STOP_WITHIN = 2.5
+HURRY_WITHIN = 0.3
 GIVE_UP_AFTER = 3.0
-# What only some services need is loaded so long after the start, which has enough to do, s.
+# Longest wait of the loop during the stop, s.
+STOP_SLICE = 0.01
+# An executor that raises at every call for this long, and this many times, has failed.
+FAILING_FOR = 0.5
+MAX_FAILURES = 5
+# Scipy, which only some services need, is loaded this long after the start, s.
 LOAD_AFTER = 3.0
-# The longest that the loop waits during that, s.
-STOP_SLICE = 0.1
 
 
 def main(args=None):
     """
-    Run the node until SIGINT or SIGTERM.
+    Run the node until a signal asks it to end.
 
     Parameters
     ----------
@@ -29,7 +33,8 @@ def main(args=None):
     Returns
     -------
     int
-        Exit code: 0 after a signal, 1 if the node could not start.
+        Exit code: 0 after a signal, 1 if the node could not start, if its executor failed, or
+        if it left an effort in force.
 
     """
     # First of all, and rclpy after it: importing takes seconds, and Ctrl-C may come then.
@@ -43,44 +48,115 @@ def main(args=None):
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         from .command_line import parse
         options = parse(sys.argv if args is None else args)
-        node = _start(signals, options)
+        node, executor = _start(signals, options)
     except Exception as error:  # a command line, a parameter or a description that is refused
         rclpy.logging.get_logger('dynamics_node').fatal(str(error))
         rclpy.try_shutdown()
         return 1
+    code = 0
     try:
         if node is not None:
-            _spin(node, signals, options)
+            code = _Loop(node, executor, signals).run()
     finally:
         rclpy.try_shutdown()
-    return 0
+    return code
 
 
 def _start(signals, options):
-    # None if a signal came first. The compiled kernels and the URDF parser are loaded here,
+    # No node if a signal came first. The compiled kernels and the URDF parser are loaded here,
     # before the first callback could wait for them.
+    from .executor import make_executor
     from .node import DynamicsNode
     from ..dynamics import RobotModel
     from ..kernels.warm_up import warm_up
     warm_up()
     RobotModel.from_urdf('<robot name="warm_up"><link name="base"/></robot>')
-    return None if signals.name else DynamicsNode(raw_states=options.raw_states)
+    if signals.name:
+        return None, None
+    executor = make_executor(options.executor)
+    return DynamicsNode(raw_states=options.raw_states), executor
 
 
-def _spin(node, signals, options):
-    from .executor import make_executor
-    executor = make_executor(options.executor, node.logger)
-    executor.add_node(node)
-    signals.call(node.create_guard_condition(lambda: None).trigger)
-    _spare_the_garbage_collector()
-    later = threading.Timer(LOAD_AFTER, _load_the_rest)
-    later.daemon = True
-    later.start()
-    while not signals.name:
-        _spin_once(node, executor)
-    _bring_to_rest(node, executor, signals.name)
-    executor.remove_node(node)
-    node.destroy_node()
+class _Loop:
+    """Spins the node, and brings the arm to rest at the end."""
+
+    def __init__(self, node, executor, signals):
+        self._node = node
+        self._executor = executor
+        self._signals = signals
+        self._failures = 0
+        self._failing_since = 0.0
+        # The wait of the events executor ends by itself, for it may not last for ever.
+        from rclpy.executors import SingleThreadedExecutor
+        self._timeout = None if isinstance(executor, SingleThreadedExecutor) else 0.1
+
+    def run(self):
+        """Spin until a signal comes or the executor fails; return the exit code."""
+        node, executor = self._node, self._executor
+        executor.add_node(node)
+        self._signals.call(node.create_guard_condition(lambda: None).trigger)
+        _spare_the_garbage_collector()
+        later = threading.Timer(LOAD_AFTER, _load_the_rest)
+        later.daemon = True
+        later.start()
+        while not self._signals.name and not self._has_failed():
+            self._spin_once(self._timeout)
+        if self._has_failed():
+            node.logger.fatal('the executor keeps failing: stopping the output and ending')
+        is_at_rest = self._bring_to_rest(self._signals.name or 'the executor keeps failing')
+        code = 0 if is_at_rest and not self._has_failed() else 1
+        executor.remove_node(node)
+        node.destroy_node()
+        return code
+
+    def _has_failed(self):
+        return (self._failures >= MAX_FAILURES
+                and time.monotonic() - self._failing_since >= FAILING_FOR)
+
+    def _spin_once(self, timeout):
+        try:
+            self._executor.spin_once(timeout)
+            self._failures = 0
+        except Exception as error:
+            # Not from the node's callbacks, which let nothing out, but rclpy has some of its
+            # own: a parameter of an unknown type raises in its parameter services.
+            self._failures += 1
+            if self._failures == 1:
+                self._failing_since = time.monotonic()
+                self._node.logger.error(f'error in rclpy: {error}\n{traceback.format_exc()}')
+            else:
+                time.sleep(0.001)
+
+    def _bring_to_rest(self, reason):
+        # Returns whether no effort is left in force.
+        output, path = self._node.output, self._node.path
+        path.close(time.monotonic(), reason, STOP_WITHIN)
+        seen, deadline = self._signals.count, time.monotonic() + GIVE_UP_AFTER
+        while path.is_on and time.monotonic() < deadline:
+            if self._signals.count > seen:
+                seen = self._signals.count
+                self._node.logger.warning('second signal: the efforts go to zero within '
+                                          f'{HURRY_WITHIN:g} s; now '
+                                          + path.output.limiter.describe_last())
+                path.close(time.monotonic(), reason, HURRY_WITHIN)
+            if self._has_failed():
+                time.sleep(STOP_SLICE)
+            else:
+                self._spin_once(STOP_SLICE)
+            try:
+                output.tick()  # also where the executor runs no timer any more
+            except Exception as error:  # the context has been shut down: nothing can be sent
+                self._node.logger.error(f'the stop cannot be sent: {error}')
+                break
+        is_at_rest = not path.output.limiter.last.any()
+        if not is_at_rest:
+            self._node.logger.error(
+                'the last efforts may stay in force: ' + path.output.limiter.describe_last())
+        try:
+            output.flush(0.2)
+        except Exception:
+            return False
+        return is_at_rest
 
 
 def _spare_the_garbage_collector():
@@ -96,30 +172,6 @@ def _load_the_rest():
     import scipy.interpolate
     import scipy.spatial.transform  # noqa: F401
     gc.freeze()
-
-
-def _spin_once(node, executor, timeout=None):
-    try:
-        executor.spin_once(timeout)
-    except Exception as error:
-        # Not from our callbacks, which let nothing out, but rclpy has some of its own: a
-        # parameter of an unknown type raises in its parameter services.
-        node.logger.error(f'error in rclpy: {error}\n{traceback.format_exc()}')
-
-
-def _bring_to_rest(node, executor, reason):
-    output = node.output
-    if not output.channel.machine.is_on:
-        return
-    output.stop(reason, within=STOP_WITHIN)
-    deadline = time.monotonic() + GIVE_UP_AFTER
-    while output.channel.machine.is_on and time.monotonic() < deadline:
-        _spin_once(node, executor, STOP_SLICE)
-    if output.channel.machine.is_on:
-        node.logger.error(
-            f'the stop did not end within {GIVE_UP_AFTER:g} s: the last efforts stay in force, '
-            f'{output.channel.limiter.describe_last()}; effort_rate_limits are too small for it')
-    output.flush(0.2)
 
 
 if __name__ == '__main__':

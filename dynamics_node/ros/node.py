@@ -1,37 +1,35 @@
 """`DynamicsNode`: joint states in, gravity torque and commands out."""
 
 import math
+import time
 
+import numpy as np
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from .change_check import check_change
-from .command_output import CommandOutput
-from .compensation import Compensation
+from .command_output import CommandOutput, output_settings
+from .controller_check import Controllers
 from .description_source import DescriptionSource
 from .diagnostics import Diagnostics
 from .enabling import Enabling
 from .external_torque import ExternalTorque
 from .guard import logged
 from .hints import Hints
-from .markers import Markers
 from .model_settings import PER_JOINT
 from .parameter_table import ParameterError
 from .parameters import Parameters
+from .protection import Protection
+from .publisher_monitor import PublisherMonitor
 from .results import Results
-from .rivals import Rivals
-from .robot import Robot
+from .robot import read_robot
 from .services import DynamicsServices
 from .setting_services import SettingServices
 from .state_input import StateInput
 from .throttle import Throttle
 from .trajectory_services import TrajectoryServices
-from ..dynamics import RobotModel
 from ..errors import DynamicsError
-from ..safety import StampTolerance
-
-# How often the node looks for other sources of efforts and states while output is on, s.
-RIVALS_EVERY = 0.2
+from ..safety import EffortLimiter, GravityChange
 
 
 class DynamicsNode(Node):
@@ -39,7 +37,7 @@ class DynamicsNode(Node):
 
     def __init__(self, raw_states=False, **options):
         """
-        Create everything the node consists of; the output is off.
+        Create all parts of the node; the output is off.
 
         Parameters
         ----------
@@ -61,38 +59,35 @@ class DynamicsNode(Node):
         self._robot = None
         self._has_states = False
         self._not_finite = Throttle(1.0)
+        self._gravity_change = GravityChange()
         self.parameters = Parameters(self)
         self._results = Results(self, self.parameters)
         self._external_torque = ExternalTorque(self, self.parameters)
-        self.output = CommandOutput(self, self.parameters, self._get_robot,
-                                    self._output_changed)
-        self._markers = Markers(self, self.parameters, self.output.channel,
-                                self._ask_for_efforts)
-        self.states = StateInput(self, self.parameters, self._get_robot, self.output.channel,
-                                 self, raw_states)
-        self._rivals = Rivals(self, self.output.topic, self.states,
-                              self.parameters['allow_several_state_publishers'])
-        self._enabling = Enabling(self, self.parameters, self._get_robot, self.output,
-                                  self._rivals)
+        self.output = CommandOutput(self, self.parameters, self._output_changed)
+        self.path = self.output.path
+        self.states = StateInput(self, self.parameters, self.output, self, raw_states)
+        self._wants_enable = self.parameters['enable_on_start']
+        self.source = DescriptionSource(self, self.parameters, self._described)
+        monitor = PublisherMonitor(self, self.output.topic, self.states, self.source,
+                                   self.parameters['allow_several_state_publishers'])
+        controllers = Controllers(self, self.output.topic)
+        self._enabling = Enabling(self, self.parameters, self._get_robot, self.output, monitor,
+                                  controllers, self.source)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.states,
                                         self.output, self._external_torque)
-        self._compensation = Compensation(self, self.parameters)
         self._answering = [
             DynamicsServices(self, self._get_robot, self.parameters),
             SettingServices(self, self._get_robot, self.parameters),
             TrajectoryServices(self, self._get_robot, self.parameters,
-                               lambda: self.output.channel.machine.is_on)]
-        self._look_for_rivals = self.create_timer(
-            RIVALS_EVERY, self._stop_for_rivals, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self._look_for_rivals.cancel()
-        self._wants_enable = self.parameters['enable_on_start']
-        self.source = DescriptionSource(self, self.parameters, self._described)
+                               lambda: self.path.is_on)]
         self._hints = Hints(self, self._get_robot, self.source, self.states)
         self.parameters.watch(self._reconfigured, self._check_against_robot)
+        self._protection = Protection(self, self.output, monitor, controllers, self._get_robot)
+        self.source.begin()
         self.create_timer(1.0, self._every_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def on_internal_error(self, message):
-        """Stop the output: a callback on the way of the torque has failed."""
+        """Stop the output: a callback on the torque path has failed."""
         self.output.on_internal_error(message)
 
     def _get_robot(self):
@@ -100,15 +95,12 @@ class DynamicsNode(Node):
 
     def _described(self, source, origin):
         # True if it was taken, or refused for good; False if it may be offered again.
-        if self.output.channel.machine.is_on:
-            self.logger.warning(f'new robot description from {origin} ignored: output is on; '
-                                'disable it first')
+        if self.path.is_on:
+            self.logger.warning(f'new robot description from {origin} waits until the output is '
+                                'off: disable it to take the description')
             return False
         try:
-            model = RobotModel.from_urdf(source)
-            if not model.joint_names:
-                raise DynamicsError('the robot has no joint that can be moved')
-            robot = Robot(model, self.parameters['joints'])
+            robot = read_robot(source, self.parameters.values)
             self._check_lengths(self.parameters.values, robot)
             robot.configure(self.parameters.values)
         except (DynamicsError, ParameterError) as error:
@@ -116,14 +108,17 @@ class DynamicsNode(Node):
                 raise
             kept = 'the one before stays in force' if self._robot else 'still waiting for one'
             self.logger.error(f'robot description from {origin} refused, {kept}: {error}')
+            if self._robot is not None:
+                self._robot.refused_since = str(error)
             return True
-        # In another process; the general kernel, loaded at the start, answers meanwhile. For
-        # payloads too: when one comes, the arm may float, and nothing should be started then.
-        model.specialise(wait=False, loads=True)
+        if self.parameters['machine_code']:
+            # In another process; the general kernel answers meanwhile. For payloads too: when
+            # one comes, the arm may float, and nothing should be started then.
+            robot.model.specialise(wait=False, loads=True)
         is_first = self._robot is None
         self._robot = robot
+        self.path.use(robot.buffer)
         self._configure(self.parameters.values)
-        self._markers.prepare(robot)
         self._announce(robot, origin)
         if is_first:
             self.output.announce()
@@ -137,8 +132,8 @@ class DynamicsNode(Node):
 
     def _check_lengths(self, values, robot):
         count = len(robot.joint_names)
-        for name in ('effort_limits', 'effort_rate_limits', 'effort_scale', *PER_JOINT,
-                     'friction.smoothing_velocity'):
+        for name in ('effort_limits', 'effort_rate_limits', 'velocity_limits', 'effort_scale',
+                     *PER_JOINT, 'friction.smoothing_velocity'):
             allowed = (0, 1, count) if name == 'friction.smoothing_velocity' else (0, count)
             if len(values[name]) not in allowed:
                 raise ParameterError(f'{name}: expected {count} numbers for '
@@ -151,31 +146,30 @@ class DynamicsNode(Node):
             return
         self._check_lengths(values, robot)
         model = robot.configured(values, before)
-        if self.output.channel.machine.is_on:
-            check_change(robot, model, values, before)
+        if self.path.is_on:
+            check_change(robot, model, values, before, self._gravity_change, time.monotonic())
 
     def _reconfigured(self, values, before):
         if self._robot is not None:
             self._robot.configure(values, before)
+            if values['gravity'] != before['gravity']:
+                self._gravity_change.accept(time.monotonic(), values['gravity'])
         else:
             self.source.offer_again()  # it may have been refused for a parameter
         self._configure(values)
 
     def _configure(self, values):
-        if self._robot is not None:
-            self._robot.buffer.tolerance = StampTolerance(values['state_timeout'])
-        self.output.configure()
+        robot = self._robot
+        if robot is not None:
+            self.path.configure(
+                output_settings(values), robot.compensation(values), _limiter(robot, values),
+                robot.motion_limits(values['velocity_limits']))
+        self.output.configured()
         self._external_torque.configure()
-        self._ask_for_efforts()
 
-    def _ask_for_efforts(self):
-        self.states.with_effort = self._external_torque.is_on or self._markers.is_on
-
-    def on_state(self, robot, now, stamp):
-        """Compute what follows from a state that is fit for use, and publish it."""
-        effort = robot.gravity_torque()
-        self.output.on_effort(now, self._compensation.effort(robot, effort)
-                              if self.output.channel.machine.is_driving else effort)
+    def on_state(self, stamp):
+        """Publish what follows from a joint state besides the command, which has gone out."""
+        robot, effort = self._robot, self.path.gravity_torque
         if not all(map(math.isfinite, effort.tolist())):
             if self._not_finite.is_due():
                 self.logger.warning('gravity torque is not finite at this joint state: not '
@@ -189,34 +183,37 @@ class DynamicsNode(Node):
         self._results.publish(robot, stamp, effort)
         if self._external_torque.is_on:
             self._external_torque.on_state(robot, stamp, effort)
-        self._markers.on_state(robot, stamp, effort)
 
     @logged
     def _every_second(self):
-        # Somebody's own request, also one to disable, counts more than the parameter.
-        if self._wants_enable and not self._enabling.was_asked:
-            self._enabling.enable(self._enabled_on_start)
+        # A request, also one to disable, counts more than the parameter.
+        if self._wants_enable and not self._enabling.was_asked and self.executor is not None:
+            self.executor.create_task(self._enable_on_start)
+        if not self.path.is_on:
+            self.source.offer_pending()  # a description that came while the output was on
         self._hints.give()
         self.states.count_publishers()
         self._diagnostics.measure()
         self._diagnostics.publish()
 
-    def _enabled_on_start(self, is_accepted, text):
+    async def _enable_on_start(self):
+        try:
+            is_accepted, text = await self._enabling.enable()
+        except Exception as error:
+            is_accepted, text = False, f'internal error: {error}'
+            self.on_internal_error(text)
         self._wants_enable = not is_accepted
         if not is_accepted:
             self.logger.warning(f'enable_on_start: {text}', throttle_duration_sec=10.0)
 
-    @logged
-    def _stop_for_rivals(self):
-        reasons = self._rivals.found() if self.output.channel.machine.is_driving else []
-        if reasons:
-            self.output.fault('; '.join(reasons))
-
     def _output_changed(self):
-        if self.output.channel.machine.is_driving:
-            # A start that begins again and again must not put the look off.
-            if self._look_for_rivals.is_canceled():
-                self._look_for_rivals.reset()
-        else:
-            self._look_for_rivals.cancel()
+        if self.path.is_driving:
+            self._gravity_change.begin(time.monotonic(), self.parameters['gravity'])
         self._diagnostics.publish()
+
+
+def _limiter(robot, values):
+    limits = robot.effort_limits(values['effort_limits'])
+    rates, scale = values['effort_rate_limits'], values['effort_scale']
+    return EffortLimiter(limits, np.array(rates) if rates else limits / 0.1,
+                         np.array(scale) if scale else np.ones(len(limits)), robot.joint_names)

@@ -146,6 +146,9 @@ PARAMETERS = (
               'robot_description', read_only=True),
     Parameter('gravity', DOUBLES, (0.0, 0.0, -9.81), 'Gravity acceleration in the frame of '
               'the root link, m/s², points down', length=3, low=-MAX_GRAVITY, high=MAX_GRAVITY),
+    Parameter('machine_code', FLAG, False, 'Compile machine code for the robot in another process '
+              'at start: some microseconds less per state. By default no compiler runs beside an '
+              'arm', read_only=True),
     Parameter('command_topic', TEXT, 'forward_effort_controller/commands', 'Where the efforts '
               'go while output is enabled', read_only=True),
     Parameter('enable_on_start', FLAG, False, 'Enable the output as soon as it is possible. '
@@ -161,18 +164,30 @@ PARAMETERS = (
               'clock', low=0.0, low_open=True, high=10.0),
     Parameter('allow_several_state_publishers', FLAG, False, 'Enable although joint_states has '
               'several publishers: where arm and gripper have a broadcaster each', read_only=True),
-    Parameter('start_ramp', DOUBLE, 0.5, 'Time from zero to the full effort, s', low=0.0,
-              high=60.0),
+    Parameter('allow_self_compensating_arm', FLAG, False, 'Enable although the ros2_control '
+              'hardware plugin in the URDF drives an arm that compensates gravity itself: a '
+              'second gravity torque pushes such an arm up (docs/arms.md)'),
+    Parameter('allow_upward_gravity', FLAG, False, 'Enable although gravity points up in the '
+              'frame of the root link: for an arm that hangs from a ceiling'),
+    Parameter('allow_limits_above_urdf', FLAG, False, 'Enable although effort_limits or '
+              'velocity_limits are above those of the URDF'),
+    Parameter('start_ramp', DOUBLE, 0.5, 'Time from zero to the full effort, s. A change of '
+              'payload, gravity, terms, gains or limits while efforts are sent takes as long',
+              low=0.0, high=60.0),
     Parameter('stop_ramp', DOUBLE, 1.0, 'Time from the last effort to zero, s', low=0.0,
               high=60.0),
     Parameter('stop_behavior', TEXT, 'ramp_to_zero', 'How the output stops: ramp_to_zero, zero '
-              '(as fast as the rate limits allow) or hold (the last effort stays)',
+              '(as fast as the rate limits allow, at most 1 s) or hold (when joint states end, '
+              'the last effort stays in force; every other stop ramps to zero)',
               choices=STOP_BEHAVIORS),
     Parameter('effort_limits', DOUBLES, (), 'Largest effort per joint, N m or N, in the order '
               'of joints. Empty: those of the URDF; a joint without a limit refuses to be enabled',
               low=0.0, low_open=True),
     Parameter('effort_rate_limits', DOUBLES, (), 'Largest change of effort per joint, N m/s or '
               'N/s. Empty: the effort limit per 0.1 s', low=0.0, low_open=True),
+    Parameter('velocity_limits', DOUBLES, (), 'Speed per joint above which the output stops '
+              '(runaway), rad/s or m/s, in the order of joints. Empty: those of the URDF',
+              low=0.0, low_open=True),
     Parameter('effort_scale', DOUBLES, (), 'Gain on the model effort per joint. Empty: 1',
               low=0.0, high=10.0),
     Parameter('compensate.gravity', FLAG, True, 'Whether the gravity torque G is part of the '

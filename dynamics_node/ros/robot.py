@@ -3,9 +3,41 @@
 import numpy as np
 
 from .model_settings import configured
-from ..dynamics import JointSelection
+from ..dynamics import Compensation, JointSelection, one_off_model, RobotModel
 from ..errors import DynamicsError
+from ..model import build_tree
 from ..safety import JointStateBuffer, MotionLimits
+from ..urdf import read_urdf
+
+
+def read_robot(source, values):
+    """
+    Make the robot of a description.
+
+    Parameters
+    ----------
+    source : str or bytes
+        Path or text of the URDF.
+    values : dict of str to Any
+        Of the parameters: `joints`, and `machine_code`, without which the model never starts a
+        compiler.
+
+    Returns
+    -------
+    Robot
+        Not configured yet.
+
+    Raises
+    ------
+    DynamicsError
+        If the description is refused, or has no joint that can be moved.
+
+    """
+    tree = build_tree(read_urdf(source))
+    if not tree.joint_names:
+        raise DynamicsError('the robot has no joint that can be moved')
+    return Robot(RobotModel(tree) if values['machine_code'] else one_off_model(tree),
+                 values['joints'])
 
 
 class StateUnavailableError(DynamicsError):
@@ -27,6 +59,8 @@ class Robot:
     has_all_in_order : bool
         Whether the chosen joints are those of the model in its order, so that nothing has to
         be picked out.
+    refused_since : str
+        Why a newer description was refused; '' if none was.
 
     """
 
@@ -50,8 +84,8 @@ class Robot:
         self.selection = JointSelection(model, joints)
         self.buffer = JointStateBuffer(
             model.joint_names, self.selection.names, model.neutral_position,
-            MotionLimits(model.joint_names, model.velocity_limits, model.position_limits,
-                         model.is_continuous))
+            self.motion_limits(()))
+        self.refused_since = ''
         self._asked: tuple | None = None
         self._answer = model
         self.has_all_in_order = self.selection.names == tuple(model.joint_names)
@@ -105,10 +139,32 @@ class Robot:
         """The chosen joints, in the order of answers and commands."""
         return self.selection.names
 
-    def gravity_torque(self):
-        """Return G of the chosen joints at the newest state, shape (m,), N m or N."""
-        G = self.model.gravity_torque(self.buffer.position)
-        return G if self.has_all_in_order else G[self.selection.index]
+    def compensation(self, values):
+        """Return the `Compensation` that the parameters ask for."""
+        return Compensation(self.model, None if self.has_all_in_order else self.selection.index,
+                            values['compensate.gravity'], values['compensate.coriolis'],
+                            values['compensate.friction'])
+
+    def motion_limits(self, velocity_limits):
+        """
+        Return how far and fast the joints may move.
+
+        Parameters
+        ----------
+        velocity_limits : sequence of float
+            The parameter, of the chosen joints; empty for those of the URDF.
+
+        Returns
+        -------
+        MotionLimits
+
+        """
+        model = self.model
+        allowed = np.array(model.velocity_limits)
+        if velocity_limits:
+            allowed[self.selection.index] = velocity_limits
+        return MotionLimits(model.joint_names, model.velocity_limits, model.position_limits,
+                            model.is_continuous, allowed)
 
     def measured_position(self, now, timeout):
         """
@@ -141,12 +197,12 @@ class Robot:
 
     def unseen_others(self, index, now, timeout):
         """
-        Say which of the joints that somebody did not speak of are not where they are seen to be.
+        Return which of the other joints have no fresh position.
 
         Parameters
         ----------
         index : numpy.ndarray of int
-            Places of the joints that were spoken of.
+            Places of the joints that are not meant.
         now : float
             Steady clock, s.
         timeout : float
@@ -182,7 +238,7 @@ class Robot:
 
     def over_limits(self, values, model=None, before=None):
         """
-        Say which chosen joints cannot hold the robot still at the newest state.
+        Return which chosen joints cannot hold the robot still at the newest state.
 
         Parameters
         ----------
@@ -221,8 +277,46 @@ class Robot:
         return [name for name, limit in zip(self.joint_names, self.effort_limits(given),
                                             strict=True) if np.isnan(limit)]
 
-    def joints_without_velocity_limit(self):
-        """Return the names of the chosen joints whose speed has no limit, a list of str."""
+    def above_urdf(self, values):
+        """
+        Return which limits of the parameters are above those of the URDF.
+
+        Parameters
+        ----------
+        values : dict of str to Any
+            Of the parameters.
+
+        Returns
+        -------
+        str
+            Parameter, joint and both numbers each; '' if there is none.
+
+        """
+        index = self.selection.index
+        stated = {'effort_limits': self.model.effort_limits[index],
+                  'velocity_limits': self.model.velocity_limits[index]}
+        return '; '.join(
+            f'{parameter} of {name}: {given:g}, in the URDF {limit:g}'
+            for parameter, limits in stated.items()
+            for name, given, limit in zip(self.joint_names, values[parameter], limits,
+                                          strict=False) if given > limit)
+
+    def joints_without_velocity_limit(self, given=()):
+        """
+        Return the names of the chosen joints whose speed has no limit.
+
+        Parameters
+        ----------
+        given : sequence of float
+            The parameter `velocity_limits`; empty for those of the URDF.
+
+        Returns
+        -------
+        list of str
+
+        """
+        if given:
+            return []
         limits = self.model.velocity_limits[self.selection.index]
         return [name for name, limit in zip(self.joint_names, limits, strict=True)
                 if np.isnan(limit)]

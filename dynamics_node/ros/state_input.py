@@ -9,7 +9,7 @@ from .guard import guarded
 from .joint_state_reader import JointStateReader
 from .qos import joint_states, NO_SUBSCRIPTION_EVENTS
 from .throttle import Throttle
-from ..safety import RejectedStateError, take_state
+from ..safety import RejectedStateError
 
 # The shortest time between two warnings about the same thing, s.
 WARN_EVERY = 1.0
@@ -19,7 +19,7 @@ WARN_OF_LIMITS_EVERY = 30.0
 
 class StateInput:
     """
-    Subscribes to the joint states and hands on every one that is fit for use.
+    Subscribes to the joint states, sends the command that follows from each, and passes it on.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class StateInput:
 
     """
 
-    def __init__(self, node, parameters, get_robot, channel, listener, raw):
+    def __init__(self, node, parameters, output, listener, raw):
         """
         Subscribe.
 
@@ -40,11 +40,9 @@ class StateInput:
         ----------
         node : rclpy.node.Node
         parameters : Parameters
-        get_robot : callable() -> Robot or None
-        channel : EffortOutput
-            Stopped if the states say that the arm must not be driven.
+        output : CommandOutput
         listener : object
-            With `on_state(robot, now, stamp)` for every usable state, and
+            With `on_state(stamp)` for every usable state, after its command has gone out, and
             `on_internal_error(message)`.
         raw : bool
             Read the states by `JointStateReader` instead of rclpy.
@@ -53,13 +51,12 @@ class StateInput:
         self.logger = node.get_logger()
         self._node = node
         self._clock = node.get_clock()
-        self._get_robot = get_robot
-        self._channel = channel
+        self._output = output
+        self._path = output.path
         self._listener = listener
         self.on_internal_error = listener.on_internal_error
         self._reader = JointStateReader()
         self._sequence_number = 0
-        self._with_effort = False
         self._has_unstamped = False
         self._warnings: dict[str, Throttle] = {}
         self.publishers = self.skipped = 0
@@ -68,15 +65,6 @@ class StateInput:
             joint_states(parameters['allow_several_state_publishers']),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=raw)
-
-    @property
-    def with_effort(self):
-        """Whether efforts are taken into the buffer, too."""
-        return self._with_effort
-
-    @with_effort.setter
-    def with_effort(self, value):
-        self._with_effort = self._reader.with_effort = value
 
     @property
     def topic(self):
@@ -90,47 +78,55 @@ class StateInput:
 
     @guarded
     def _bytes_received(self, data, info):
-        # Also of what cannot be read: the next one would otherwise count it as skipped.
         self._count_skipped(info)
-        robot = self._get_robot()
+        if self._path.compensation is None:
+            return  # no robot yet
         try:
             message = self._reader.read(data)
-        except Exception as error:  # no joint state: several of rclpy's exceptions say so
+        except Exception as error:
+            # Whatever rclpy finds wrong with a message, it is a message that cannot be used.
             if not isinstance(error, RejectedStateError):
                 error = RejectedStateError('unreadable', str(error))
-            if robot is not None:
-                robot.buffer.rejected[error.kind] += 1
+            self._path.buffer.rejected[error.kind] += 1
             self._warn(error)
             return
-        self._take(robot, message)
+        self._take(message)
 
     @guarded
     def _received(self, message, info):
         self._count_skipped(info)
-        self._take(self._get_robot(), message)
+        if self._path.compensation is not None:
+            self._take(message)
 
-    def _take(self, robot, message):
-        if robot is None:
-            return
-        now = time.monotonic()
+    def _take(self, message):
+        path = self._path
         clock = self._clock.now().nanoseconds if self._clock.ros_time_is_active else time.time_ns()
         header_stamp = message.header.stamp
         stamp = header_stamp.sec * 1_000_000_000 + header_stamp.nanosec
         try:
-            is_usable = take_state(robot.buffer, self._channel, now, message.name,
-                                   message.position, message.velocity, stamp, clock,
-                                   message.effort if self._with_effort else None)
+            command = path.process_joint_state(
+                time.monotonic(), message.name, message.position, message.velocity, stamp, clock,
+                message.effort)
         except RejectedStateError as error:
             self._warn(error)
             return
-        if not is_usable:
+        if command is not None:
+            self._output.publish(command)
+        if not path.is_usable:
             return
-        outside = robot.buffer.outside()
+        self._warn_of_state()
+        self._listener.on_state(header_stamp if stamp else self._arrival_time())
+
+    def _warn_of_state(self):
+        buffer = self._path.buffer
+        outside = buffer.outside()
         if outside and self._is_due('outside', WARN_OF_LIMITS_EVERY):
             self.logger.warning(f'beyond the position limits: {outside}')
-        if not stamp:
-            header_stamp = self._arrival_time()
-        self._listener.on_state(robot, now, header_stamp)
+        if self._path.compensation.needs_velocity and self._path.is_driving:
+            names = buffer.joints_without_velocity()
+            if names and self._is_due('velocity', 10.0):
+                self.logger.warning(f'joint_states have no velocity of {", ".join(names)}: '
+                                    'compensate.coriolis and compensate.friction take zero')
 
     def _warn(self, error):
         if self._is_due(error.kind):

@@ -6,6 +6,9 @@ import numpy as np
 
 from ..errors import DynamicsError
 
+# Part of the effort limit that makes no difference to an arm.
+NEGLIGIBLE = 0.01
+
 
 class InvalidEffortError(DynamicsError):
     """An effort is not finite or does not have one value per joint: it is never published."""
@@ -15,16 +18,19 @@ class EffortLimiter:
     """
     Turns model efforts into commands that are safe to publish.
 
-    In this order: scale by the joint's gain, clamp to the effort limit, blend in by the ramp,
-    limit the step since the last command, and check last that every value is finite. The ramp
-    comes before the rate limit, so that the rate limit holds for what is really published.
+    In this order: scale by the joint's gain and clamp to the effort limit (`target`); then, after
+    the caller has applied its ramp, limit the step since the last command, clamp once more, and
+    check last that every value is finite (`step`). The ramp comes before the rate limit, so that
+    the rate limit holds for what is really published.
 
     Attributes
     ----------
     names : tuple of str
         Of the m joints.
     is_saturated : bool
-        Whether any joint was clamped by the last call.
+        Whether any joint was clamped by the last `target`.
+    is_held_back : bool
+        Whether any joint could not reach its target within the last `step`.
     saturations : list of int
         Commands in which each of the m joints was clamped.
     rate_limited : int
@@ -55,9 +61,9 @@ class EffortLimiter:
         self._scale = np.array(scale, dtype=float).tolist()
         m = len(self._limits)
         self.names = tuple(names) or tuple(f'joint {i}' for i in range(m))
-        self._last = [0.0] * m
+        self._last = self._before = [0.0] * m
         self._wanted = [0.0] * m
-        self.is_saturated = False
+        self.is_saturated = self.is_held_back = False
         self.saturations = [0] * m
         self.rate_limited = 0
 
@@ -79,39 +85,36 @@ class EffortLimiter:
 
     def reset(self):
         """Take zero for the last command."""
-        self._last = [0.0] * len(self._limits)
+        self._last = self._before = [0.0] * len(self._limits)
+
+    def resume(self, efforts):
+        """Take efforts that are in force, shape (m,), N m or N, for the last command."""
+        self._last = self._before = np.array(efforts, dtype=float).tolist()
 
     def carry_on_from(self, other):
         """Take over last command and counts from the limiter that this one replaces."""
-        self._last = other.last.tolist()
+        self._last = self._before = other.last.tolist()
         self.saturations = other.saturations
         self.rate_limited = other.rate_limited
 
-    def command(self, effort, ramp, dt, start=0.0):
+    def target(self, effort):
         """
-        Return the command for a model effort.
+        Return where a model effort wants the command to be: scaled and clamped.
 
         Parameters
         ----------
         effort : numpy.ndarray, shape (m,)
             N m or N.
-        ramp : float
-            Factor from 0 to 1.
-        dt : float
-            Time since the last command, s.
-        start : numpy.ndarray, shape (m,), or 0
-            The command at ramp 0, N m or N.
 
         Returns
         -------
-        numpy.ndarray, shape (m,)
-            Finite, one step from the last command, and within the limits, or on the way there
-            if the last command was beyond them.
+        list of float
+            m values within the effort limits; NaN where the effort is NaN.
 
         Raises
         ------
         InvalidEffortError
-            If the effort has another length or a value that is not finite.
+            If the effort has another length.
 
         """
         effort = np.asarray(effort, dtype=float)
@@ -129,38 +132,40 @@ class EffortLimiter:
                     self.saturations[i] += 1
                 value = _clip(value, -limit, limit)
             target.append(value)
-        if ramp != 1.0:
-            start = np.broadcast_to(start, effort.shape).tolist()
-            target = [ramp * value + (1.0 - ramp) * first for value, first in zip(target, start)]
-        return self._step_to(target, dt)
+        return target
 
-    def fade(self, start, ramp, dt):
+    def step(self, target, dt, least_steps=None):
         """
-        Return the command on the way from an earlier command to zero.
+        Return the next command on the way to a target.
 
         Parameters
         ----------
-        start : numpy.ndarray, shape (m,)
-            The command that was in force when the stop began, N m or N.
-        ramp : float
-            Factor from 1 to 0.
+        target : sequence of float
+            m values, N m or N.
         dt : float
-            Time since the last command, s.
+            Time that the step may count, s.
+        least_steps : sequence of float, optional
+            Steps that are allowed whatever the rate limits say, N m or N: a stop has to end.
 
         Returns
         -------
         numpy.ndarray, shape (m,)
+            Finite, at most one step from the last command, and within the limits, or on the way
+            there if the last command was beyond them.
+
+        Raises
+        ------
+        InvalidEffortError
+            If a value is not finite; the last command stays what it was.
 
         """
-        return self._step_to([ramp * value for value in np.asarray(start).tolist()], dt)
-
-    def _step_to(self, target, dt):
         time = max(dt, 0.0)
+        least = least_steps or [0.0] * len(self._last)
         command = []
         is_held_back = False
-        for value, last, rate, limit in zip(target, self._last, self._rate_limits, self._limits,
-                                            strict=True):
-            step = rate * time
+        for value, last, rate, limit, at_least in zip(
+                target, self._last, self._rate_limits, self._limits, least, strict=True):
+            step = max(rate * time, at_least)
             if not last - step <= value <= last + step:
                 is_held_back = True
                 value = _clip(value, last - step, last + step)
@@ -172,9 +177,19 @@ class EffortLimiter:
             command.append(value)
         if not all(map(math.isfinite, command)):
             raise InvalidEffortError(f'expected finite efforts, got {command}')
-        self._last = command
+        self._before, self._last = self._last, command
+        self.is_held_back = is_held_back
         self.rate_limited += is_held_back
         return np.array(command)
+
+    def is_negligible(self, efforts):
+        """Tell whether m efforts are within NEGLIGIBLE of the limits."""
+        return all(abs(effort) <= NEGLIGIBLE * limit for effort, limit in zip(
+            efforts.tolist(), self._limits, strict=True))
+
+    def withdraw(self):
+        """Take the last command back, because it was not published."""
+        self._last = self._before
 
 
 def _clip(value, low, high):

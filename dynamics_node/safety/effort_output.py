@@ -1,4 +1,4 @@
-"""The output as a whole: state machine, limiter and watchdog, one command at a time."""
+"""Which command goes out next: ramps, steps between states, and every stop to its end."""
 
 from dataclasses import dataclass
 
@@ -7,20 +7,28 @@ import numpy as np
 from .effort_limiter import EffortLimiter, InvalidEffortError
 from .state_machine import OutputState, OutputStateMachine
 
-# How often a stop sends its next command, and the shortest time between two looks, s.
-STOP_STEP = 0.01
-SHORTEST_LOOK = 0.001
-# An arm that needs more than its limit for so long is not held by it, s.
+# Period of the commands of a stop, and of a ramp between two joint states, s.
+STOP_PERIOD = 0.01
+# A step toward the model's effort counts at most this many nominal periods of the joint states,
+# and never more than STOP_PERIOD: after a gap the effort catches up over several commands.
+MAX_PERIODS = 3
+# A ramp advances by at most this time per command, and a step of a stop counts at most the
+# second: a process that stood still goes on where it was instead of skipping the ramp, s.
+MAX_RAMP_STEP = 0.05
+MAX_STOP_STEP = 0.02
+# A stop without a ramp ends within this time whatever the rate limits say, s.
+ZERO_WITHIN = 1.0
+# The ramp of a stop after a fault is at most this long, s.
+MAX_FAULT_RAMP = 2.0
+# An arm that needs more than its limit for this long is not held by it, s.
 LONGEST_SATURATION = 2.0
-# Starts that begin anew before the one before was over: more of them in a row follow no state.
-MAX_RESTARTS = 3
 STOP_BEHAVIORS = ('ramp_to_zero', 'hold', 'zero')
 
 
 @dataclass(frozen=True)
 class OutputSettings:
     """
-    How the output starts, stops and is limited.
+    How the output starts and stops.
 
     Attributes
     ----------
@@ -29,8 +37,9 @@ class OutputSettings:
     start_ramp, stop_ramp : float
         Durations, s.
     stop_behavior : str
-        'ramp_to_zero', 'zero' (as fast as the rate limits allow) or 'hold' (the last command
-        stays in force).
+        'ramp_to_zero', 'zero' (as fast as the rate limits allow, at most ZERO_WITHIN) or 'hold':
+        after silence of the joint states the last command stays in force; every other stop
+        ramps to zero.
 
     """
 
@@ -40,53 +49,145 @@ class OutputSettings:
     stop_behavior: str
 
 
+class _Ramp:
+    """Progress from 0 to 1, counted in the time of the commands that were sent."""
+
+    def __init__(self, duration=0.0):
+        self.duration = duration
+        self._elapsed = 0.0
+
+    def advance(self, dt):
+        """Go on by the time since the last command, s, but not by a pause of the process."""
+        self._elapsed += min(max(dt, 0.0), MAX_RAMP_STEP)
+
+    @property
+    def progress(self):
+        """From 0 to 1."""
+        return 1.0 if self._elapsed >= self.duration else self._elapsed / self.duration
+
+    @property
+    def remaining(self):
+        """Time to the end, s."""
+        return max(self.duration - self._elapsed, 0.0)
+
+
 class EffortOutput:
     """
-    Decides for every model effort and every tick whether a command goes out, and which.
+    State machine, ramps and limiter: what is sent for a model effort, and when nothing is.
 
-    Every method takes the time of one steady clock. A returned command must be published; None
-    means that nothing may be.
+    Every method takes the time of one steady clock. A returned command must be published, and
+    then `published` be called; None means that nothing may be published.
 
     Attributes
     ----------
     machine : OutputStateMachine
     limiter : EffortLimiter
-        Of no joint at all until `set_limiter`.
+        Without joints until `set_limiter`.
     settings : OutputSettings
 
     """
 
     def __init__(self, settings, on_change=None):
-        """Start with output off and no limits."""
         self.machine = OutputStateMachine(on_change)
         self.limiter = EffortLimiter(np.zeros(0), np.zeros(0), np.zeros(0))
         self.settings = settings
+        self._ramp, self._change = _Ramp(), _Ramp()
+        self._start_from = self._stop_from = np.zeros(0)
+        self._stop_within = ZERO_WITHIN
+        self._difference = np.zeros(0)
+        self._effort = None
+        self._period = STOP_PERIOD
         self._last_time = 0.0
         self._saturated_since = None
-        self._start_from = self._stop_from = np.zeros(0)
-        self._holds = False
-        self._restarts = 0
 
-    def set_limiter(self, limits, rate_limits, scale, names=()):
+    @property
+    def has_effort_in_force(self):
+        """Whether the output is off and has left an effort at the controller."""
+        return not self.machine.is_on and bool(self.limiter.last.any())
+
+    def set_limiter(self, limiter):
         """
-        Take new limits; the last command to the same joints stays what it is: nothing jumps.
+        Replace the limiter; the last command to the same joints stays what it is.
 
         Parameters
         ----------
-        limits, rate_limits, scale : numpy.ndarray, shape (m,)
-            See `EffortLimiter`.
-        names : sequence of str, optional
-            Of the m joints.
+        limiter : EffortLimiter
 
         """
-        last = self.limiter
-        self.limiter = EffortLimiter(limits, rate_limits, scale, names)
-        if last.names == self.limiter.names:
-            self.limiter.carry_on_from(last)
+        if limiter.names == self.limiter.names:
+            limiter.carry_on_from(self.limiter)
+        else:
+            self._effort = None
+        self.limiter = limiter
 
-    def enable(self, now):
+    def start(self, now, start_from, reason='enabled'):
         """
-        Begin to publish commands, from zero, or from the command that a stop has held.
+        Begin the start ramp.
+
+        Parameters
+        ----------
+        now : float
+            s.
+        start_from : numpy.ndarray, shape (m,)
+            The efforts in force now, N m or N.
+        reason : str
+            For people.
+
+        """
+        # All fields first: whoever hears of the new state finds it complete.
+        self.limiter.resume(start_from)
+        self._start_from = self.limiter.last
+        self._difference = np.zeros(len(self._start_from))
+        self._ramp, self._change = _Ramp(self.settings.start_ramp), _Ramp()
+        self._last_time = now
+        self._saturated_since = None
+        self._effort = None
+        if not self.machine.is_on:
+            self.machine.fault = ''
+        self.machine.enter(OutputState.STARTING, reason)
+
+    def blend(self, difference):
+        """
+        Let a change of model, gains or limits go out over the start ramp.
+
+        Parameters
+        ----------
+        difference : numpy.ndarray, shape (m,)
+            Target before the change minus target after it, at the same state, N m or N. What is
+            left of an earlier change is added, so that many small changes lag behind and never
+            add up to a step.
+
+        """
+        self._difference = self._remaining_difference() + difference
+        self._change = _Ramp(self.settings.start_ramp)
+        self._effort = None  # of the model before
+
+    def follow(self, now, effort, period):
+        """
+        Return the command for a model effort computed from a fresh state.
+
+        Parameters
+        ----------
+        now : float
+            s.
+        effort : numpy.ndarray, shape (m,)
+            N m or N.
+        period : float
+            Nominal period of the joint states, s.
+
+        Returns
+        -------
+        numpy.ndarray, shape (m,), or None
+
+        """
+        if not self.machine.is_driving:
+            return None
+        self._effort, self._period = effort, period
+        return self._drive(now)
+
+    def between(self, now):
+        """
+        Return the next command of a stop, or of a ramp while no new state comes.
 
         Parameters
         ----------
@@ -95,61 +196,39 @@ class EffortOutput:
 
         Returns
         -------
-        bool
-            False if the output is on already or still stopping.
+        numpy.ndarray, shape (m,), or None
 
         """
-        if not self.machine.enable(now, self.settings.start_ramp):
-            return False
-        self._start_from = self.limiter.last
+        waited = now - self._last_time
+        if self.machine.state == OutputState.STOPPING and waited >= 0.5 * STOP_PERIOD:
+            return self._fade(now)
+        if (self.machine.is_driving and waited >= 0.9 * STOP_PERIOD
+                and not self._is_settled()):
+            return self._drive(now)
+        return None
+
+    def published(self, now):
+        """
+        Note that the last command has gone out.
+
+        The next step is limited by the time since then, and states that promise something about
+        commands (ACTIVE, READY) are entered only now.
+
+        Parameters
+        ----------
+        now : float
+            s.
+
+        """
         self._last_time = now
-        self._saturated_since = None
-        self._restarts = 0
-        return True
+        if self.machine.state == OutputState.STARTING and self._is_settled():
+            self.machine.enter(OutputState.ACTIVE, 'the full effort has been reached')
+        elif self.machine.state == OutputState.STOPPING:
+            self._end_stop()
 
-    def restart(self, now, reason):
+    def stop(self, now, reason, *, is_fault=False, may_hold=False, within=None):
         """
-        Go from the last command to the model's by the start ramp, because the state is new.
-
-        Nothing happens unless commands follow the model. More than MAX_RESTARTS of them without
-        a start that came to its end are a fault: the effort would stay where it is for ever.
-
-        Parameters
-        ----------
-        now : float
-            s.
-        reason : str
-            For people.
-
-        """
-        self._restarts = self._restarts + 1 if self.machine.state == OutputState.STARTING else 1
-        if self._restarts > MAX_RESTARTS:
-            self.fault(now, f'{reason}, {self._restarts} times before the start ramp was over')
-            return
-        self._start_from = self.limiter.last
-        self.machine.restart(now, self.settings.start_ramp, reason)
-
-    def fault(self, now, reason):
-        """
-        Stop because the arm must not be driven any further; nothing happens while output is off.
-
-        The last command is not held, whatever `settings.stop_behavior` says: it may be what the
-        arm runs away with.
-
-        Parameters
-        ----------
-        now : float
-            s.
-        reason : str
-            For people.
-
-        """
-        if self.machine.is_on:
-            self.stop(now, reason, is_fault=True, may_hold=False)
-
-    def stop(self, now, reason, is_fault=False, within=None, may_hold=True):
-        """
-        Begin to stop, as `settings.stop_behavior` says.
+        Begin to stop, or hasten a stop.
 
         Parameters
         ----------
@@ -159,128 +238,120 @@ class EffortOutput:
             For people.
         is_fault : bool
             Whether the stop ends in FAULT.
-        within : float, optional
-            Longest time that the stop may take, s: when the process has to end.
         may_hold : bool
-            Whether stop_behavior 'hold' is obeyed; otherwise the effort goes to zero.
+            Whether `settings.stop_behavior` 'hold' is obeyed.
+        within : float, optional
+            Longest time that the stop may take, s.
 
         """
-        behavior = self.settings.stop_behavior
-        holds = behavior == 'hold' and may_hold
-        ramp = 0.0 if holds or behavior == 'zero' else self.settings.stop_ramp
-        if within is not None:
-            ramp = min(ramp, within)
-            self.machine.hasten(now, within)
-        if self.machine.is_driving:
-            self._stop_from = self.limiter.last
-            self._holds = holds
-            if holds:
-                reason += ' (stop_behavior hold: the last efforts stay in force)'
-        elif not may_hold:
-            self._holds = False
-        self.machine.stop(now, ramp, reason, is_fault)
+        if is_fault:
+            self.machine.latch(reason)
+        if may_hold and self.settings.stop_behavior == 'hold' and self.machine.is_driving:
+            self.machine.enter(OutputState.HOLDING, f'{reason} (stop_behavior hold: the last '
+                               'efforts stay in force; ~/enable with false releases them)')
+            return
+        longest = min(MAX_FAULT_RAMP if is_fault else np.inf,
+                      np.inf if within is None else within)
+        if self.machine.state == OutputState.STOPPING:
+            if self._ramp.remaining > longest or self._stop_within > longest:
+                self._begin_fade(now, min(self._ramp.remaining, longest), longest)
+        elif self.machine.is_on or self.has_effort_in_force:
+            ramp = 0.0 if self.settings.stop_behavior == 'zero' else self.settings.stop_ramp
+            self._begin_fade(now, min(ramp, longest), longest)
+            self.machine.enter(OutputState.STOPPING, reason)
+        elif is_fault:
+            self.machine.enter(OutputState.FAULT, self.machine.fault)
 
-    def on_effort(self, now, effort):
+    def abandon(self, reason):
         """
-        Take a model effort computed from a fresh state.
+        End at once in FAULT without another command, because no controller takes it.
+
+        The last command is kept: the hardware may hold it, and the next start begins there.
 
         Parameters
         ----------
-        now : float
-            s.
-        effort : numpy.ndarray, shape (m,)
-            N m or N.
-
-        Returns
-        -------
-        numpy.ndarray, shape (m,), or None
+        reason : str
+            For people.
 
         """
-        if not self.machine.is_driving:
+        self.machine.latch(reason)
+        self.machine.enter(OutputState.FAULT, self.machine.fault)
+
+    def next_tick_in(self, now):
+        """Return when `between` has the next command, s; infinite if it has none."""
+        if self.machine.state == OutputState.STOPPING:
+            return STOP_PERIOD
+        if self.machine.is_driving and self._effort is not None and not self._is_settled():
+            return max(self._last_time + STOP_PERIOD - now, 0.0)
+        return np.inf
+
+    def _drive(self, now):
+        if self._effort is None:
             return None
+        dt = now - self._last_time
+        self._ramp.advance(dt)
+        self._change.advance(dt)
         try:
-            command = self.limiter.command(effort, self.machine.progress(now), self._dt(now),
-                                           self._start_from)
+            target = self.limiter.target(self._effort)
+            if self._ramp.progress != 1.0 or self._change.progress != 1.0:
+                target = self._on_the_ramps(np.array(target)).tolist()
+            command = self.limiter.step(
+                target, min(dt, MAX_PERIODS * self._period, STOP_PERIOD))
         except InvalidEffortError as error:
             self.stop(now, f'invalid effort: {error}', is_fault=True)
             return None
         self._last_time = now
-        self.machine.advance(now)
         self._watch_saturation(now)
         return command
 
-    def published(self, now):
-        """
-        Take note that the last command has gone out.
+    def _on_the_ramps(self, target):
+        progress = self._ramp.progress
+        return (progress * (target + self._remaining_difference())
+                + (1.0 - progress) * self._start_from)
 
-        The next step is limited by the time since then, and not since its state arrived: however
-        late a command goes out, the next one keeps the rate limit as others see it.
+    def _remaining_difference(self):
+        return (1.0 - self._change.progress) * self._difference
 
-        Parameters
-        ----------
-        now : float
-            s.
+    def _is_settled(self):
+        # The command is what the model wants: no ramp, no rate limit in between. Gravity may
+        # change a hundred times a second: what is left of that is small, and never nothing.
+        return (self._ramp.progress == 1.0 and self._effort is not None
+                and not self.limiter.is_held_back
+                and self.limiter.is_negligible(self._remaining_difference()))
 
-        """
-        self._last_time = now
+    def _begin_fade(self, now, ramp, longest):
+        self._ramp = _Ramp(ramp)
+        self._stop_from = self.limiter.last
+        self._stop_within = min(max(ramp, ZERO_WITHIN), longest)
+        if not self.machine.is_on:
+            self._last_time = now
+        self._effort = None
 
-    def tick(self, now, state_age):
-        """
-        Watch the age of the joint state, and walk the stop to its end.
-
-        Parameters
-        ----------
-        now : float
-            s.
-        state_age : float
-            Age of the newest usable joint state, s.
-
-        Returns
-        -------
-        numpy.ndarray, shape (m,), or None
-
-        """
-        timeout = self.settings.state_timeout
-        if self.machine.is_driving and state_age > timeout:
-            self.stop(now, f'joint_states stale: last {state_age:.3f} s ago, '
-                           f'limit {timeout:.3f} s', is_fault=True)
-        if self.machine.state != OutputState.STOPPING:
+    def _fade(self, now):
+        if self._end_stop():
             return None
-        return self._stopping(now)
-
-    def next_look(self, state_age):
-        """
-        Return when `tick` has to be called next while the output is on.
-
-        Parameters
-        ----------
-        state_age : float
-            Age of the newest usable joint state, s.
-
-        Returns
-        -------
-        float
-            s: the next step of a stop, or the moment at which the newest state becomes stale.
-
-        """
-        if not self.machine.is_driving:
-            return STOP_STEP
-        return max(self.settings.state_timeout - state_age, SHORTEST_LOOK)
-
-    def _stopping(self, now):
-        is_over = self.machine.progress(now) >= 1.0
-        if is_over and (self._holds or not self.limiter.last.any()):
-            # Only now, so that whoever hears of the new state has got the last command before.
-            self.machine.advance(now)
-            return None
+        dt = now - self._last_time
+        self._ramp.advance(dt)
+        # However small the rate limits are, or have become, the stop keeps its bound.
+        least = np.abs(self._stop_from) * (min(max(dt, 0.0), MAX_RAMP_STEP)
+                                           / max(self._stop_within, STOP_PERIOD))
+        target = (1.0 - self._ramp.progress) * self._stop_from
         try:
-            command = self.limiter.fade(self._stop_from, 1.0 - self.machine.progress(now),
-                                        self._dt(now))
+            command = self.limiter.step(target.tolist(), min(dt, MAX_STOP_STEP), least.tolist())
         except InvalidEffortError:  # limits that are no numbers: a stop has to end all the same
             self.limiter.reset()
             command = self.limiter.last
         self._last_time = now
         return command
+
+    def _end_stop(self):
+        if self._ramp.progress < 1.0 or self.limiter.last.any():
+            return False
+        if self.machine.fault:
+            self.machine.enter(OutputState.FAULT, self.machine.fault)
+        else:
+            self.machine.enter(OutputState.READY, f'stopped: {self.machine.reason}')
+        return True
 
     def _watch_saturation(self, now):
         if not self.limiter.is_saturated:
@@ -290,6 +361,3 @@ class EffortOutput:
         elif now - self._saturated_since > LONGEST_SATURATION:
             self.stop(now, f'effort above its limit for {LONGEST_SATURATION:g} s: '
                            f'{self.limiter.saturation()}', is_fault=True)
-
-    def _dt(self, now):
-        return now - self._last_time

@@ -12,13 +12,13 @@ from ..errors import quoted
 
 # More names than any robot has: such a message is refused before its arrays are touched.
 MAX_NAMES = 4096
-# One impossible position is a slip of the line; so many in a row are not.
+# A single impossible position may be a transmission error; this many in a row are a fault.
 MAX_JUMPS = 3
 
 
 class JointStateBuffer:
     """
-    Positions, velocities and, where they are wanted, efforts by joint name.
+    Positions, velocities and efforts by joint name.
 
     Messages may name the joints in any order, only some of them, and others besides. A message
     is taken whole or rejected whole; a rejected one does not make anything fresh.
@@ -40,7 +40,7 @@ class JointStateBuffer:
 
     def __init__(self, names, needed, neutral, limits=None, tolerance=None):
         """
-        Start with no joint measured.
+        Start without measurements.
 
         Parameters
         ----------
@@ -81,7 +81,7 @@ class JointStateBuffer:
 
     def follow_clock(self, clock):
         """
-        Notice that the clock of the stamps has gone back; what was measured before is forgotten.
+        Compare the clock of the stamps with the last one; forget all measurements if it is behind.
 
         Parameters
         ----------
@@ -109,9 +109,12 @@ class JointStateBuffer:
         self.forget()
         return back
 
-    def update(self, now, names, positions, velocities=(), stamp=0, clock=0, efforts=None):
+    def update(self, now, names, positions, velocities=(), stamp=0, clock=0, efforts=()):
         """
         Take one message.
+
+        The age of its joints counts from the stamp where there is one: a state that has been
+        delayed on its way is as old as it is, not as young as its arrival.
 
         Parameters
         ----------
@@ -126,9 +129,9 @@ class JointStateBuffer:
             When the state was measured, ns; 0 if the message does not say it.
         clock : int
             Arrival on the clock that stamps belong to, ns.
-        efforts : sequence of float, optional
+        efforts : sequence of float
             As many as names; anything else makes them unknown, and is no reason to drop a state
-            whose positions are good. None: they are not asked for.
+            whose positions are good.
 
         Raises
         ------
@@ -145,8 +148,7 @@ class JointStateBuffer:
         except RejectedStateError as error:
             self.rejected[error.kind] += 1
             raise
-        if efforts is not None:
-            self._take_efforts(efforts, len(names))
+        self._take_efforts(efforts, len(names))
         if self._jumps and any(target == self._jumped_joint for _, target in self._needed_pairs):
             self._jumps = 0  # it is the joint itself that stands where it may
         self.accepted += 1
@@ -172,13 +174,15 @@ class JointStateBuffer:
         if any(map(math.isinf, velocities)):
             # No joint is that fast: it is not known how fast it is.
             velocities = [math.nan if math.isinf(value) else value for value in velocities]
+        # The tolerance above has made sure that the stamp is credible.
+        measured = now - max(clock - stamp, 0) * 1e-9 if stamp else now
         for source, target in pairs:
             position[target] = positions[source]
             velocity[target] = velocities[source] if has_velocities else math.nan
-            time[target] = now
+            time[target] = measured
             stamps[target] = stamp
         self._newest_stamp = max(stamp, self._newest_stamp)
-        self._oldest = now if is_complete else min(
+        self._oldest = measured if is_complete else min(
             (self._time[i] for i in self._needed), default=-math.inf)
 
     def _take_efforts(self, efforts, count):
@@ -233,7 +237,7 @@ class JointStateBuffer:
         """
         Take no joint for measured any more, because the time or the arm has jumped.
 
-        `age` goes on from the last state: being told so is no sign of life.
+        `age` goes on from the last state: a reset does not count as a fresh measurement.
 
         """
         self._forgotten = max(self._oldest, self._forgotten)
@@ -286,6 +290,11 @@ class JointStateBuffer:
         return np.array(self._effort, dtype=float)
 
     @property
+    def needed_effort(self):
+        """Newest efforts of the needed joints, NaN where unknown; a copy."""
+        return np.array([self._effort[i] for i in self._needed])
+
+    @property
     def measured(self):
         """When the oldest of the needed joints was measured, ns; 0 where that is not said."""
         return min((self._stamp[i] for i in self._needed), default=0)
@@ -300,17 +309,21 @@ class JointStateBuffer:
         """Names in the newest message whose names could be used, whatever came of the rest."""
         return tuple(self._known_names or ())
 
+    def joints_without_velocity(self):
+        """Return the names of the needed joints whose velocity is unknown, a list of str."""
+        return [self._names[i] for i in self._needed if math.isnan(self._velocity[i])]
+
     @property
     def is_complete(self):
         """Whether every needed joint has been measured, however long ago."""
         return self._oldest > -math.inf
 
     def runaway(self):
-        """Say which needed joints are faster than any healthy arm; '' if none is."""
+        """Return which needed joints are above their velocity limit; '' if none is."""
         return self.limits.runaway(self._needed, self._velocity)
 
     def outside(self):
-        """Say which needed joints stand beyond their position limits; '' if none does."""
+        """Return which needed joints stand beyond their position limits; '' if none does."""
         return self.limits.outside(self._needed, self._position)
 
     def age(self, now):

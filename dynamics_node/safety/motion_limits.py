@@ -2,15 +2,15 @@
 
 import math
 
-# Motion beyond this many times the velocity limit is no motion of a healthy arm.
-VELOCITY_MARGIN = 2.0
+# A step that needs more than this many times the velocity limit is a wrong measurement.
+JUMP_MARGIN = 2.0
 # Two messages may come closer together than their measurements were made, s.
 SHORTEST_STEP = 0.01
 
 
 class MotionLimits:
     """
-    What the joints of one robot can do; what is not known of a joint is not asked of it.
+    What the joints of one robot can do; unknown limits are infinite.
 
     Attributes
     ----------
@@ -20,26 +20,35 @@ class MotionLimits:
 
     """
 
-    def __init__(self, names, velocity, position, is_continuous):
+    def __init__(self, names, velocity, position, is_continuous, allowed_velocity=None):
         """
-        Take the limits of n joints.
+        Keep the limits of n joints.
 
         Parameters
         ----------
         names : sequence of str
         velocity : numpy.ndarray, shape (n,)
-            Largest speed, rad/s or m/s; NaN if not known.
+            Largest speed that the joint can reach, rad/s or m/s; NaN if not known.
         position : numpy.ndarray, shape (n, 2)
             Lowest and highest, rad or m; infinite if there is none.
         is_continuous : numpy.ndarray of bool, shape (n,)
             Joints that turn without end: a whole turn more or less is the same position.
+        allowed_velocity : numpy.ndarray, shape (n,), optional
+            Speed above which a joint runs away, rad/s or m/s, NaN for none; by default
+            `velocity`.
 
         """
         self.names = tuple(names)
         # Infinity instead of NaN: every comparison with it says that the limit is kept. Lists,
         # not arrays: plain numbers are several times as fast, and every state asks.
-        self._velocity = [math.inf if math.isnan(limit) else float(limit) for limit in velocity]
-        self._fastest = [VELOCITY_MARGIN * limit for limit in self._velocity]
+        allowed = velocity if allowed_velocity is None else allowed_velocity
+        self._allowed = [math.inf if math.isnan(limit) else float(limit) for limit in allowed]
+        # A limit that is allowed above the URDF's says that the joint can be that fast.
+        self._velocity = [
+            allowed if math.isnan(limit) else max(float(limit), allowed if allowed < math.inf
+                                                  else 0.0)
+            for limit, allowed in zip(velocity, self._allowed, strict=True)]
+        self._fastest = [JUMP_MARGIN * limit for limit in self._velocity]
         self.small_steps = [limit * SHORTEST_STEP for limit in self._fastest]
         self._lower = [float(low) for low, _ in position]
         self._upper = [float(high) for _, high in position]
@@ -82,7 +91,7 @@ class MotionLimits:
 
     def runaway(self, joints, velocity):
         """
-        Return which joints are faster than any healthy arm.
+        Return which joints are above their allowed velocity.
 
         Parameters
         ----------
@@ -97,9 +106,9 @@ class MotionLimits:
             '' if there is none; otherwise names, velocities and limits.
 
         """
-        fastest = self._fastest
-        fast = [i for i in joints if abs(velocity[i]) > fastest[i]]
-        return ', '.join(f'{self.names[i]} at {velocity[i]:.4g} (limit {self._velocity[i]:g})'
+        allowed = self._allowed
+        fast = [i for i in joints if abs(velocity[i]) > allowed[i]]
+        return ', '.join(f'{self.names[i]} at {velocity[i]:.4g} (limit {allowed[i]:g})'
                          for i in fast)
 
     def outside(self, joints, position):

@@ -139,6 +139,8 @@ class RobotDescription:
         In the order of the URDF.
     warnings : tuple of str
         What was accepted but looks wrong, one sentence each.
+    hardware_plugins : tuple of str
+        `<ros2_control><hardware><plugin>`: which drivers the arm has.
 
     """
 
@@ -147,3 +149,4 @@ class RobotDescription:
     links: tuple
     joints: tuple
     warnings: tuple = ()
+    hardware_plugins: tuple = ()

@@ -78,6 +78,7 @@ def examine_urdf(source):
     robot, name = _element(source)
     visual, collision = ({link.get('name') for link in robot.findall('link')
                           if link.find(tag) is not None} for tag in ('visual', 'collision'))
+    plugins = _hardware_plugins(robot)
     robot = _needed(robot)
     # yourdfpy asks for one, of no use to it.
     robot.set('name', 'robot')
@@ -92,7 +93,8 @@ def examine_urdf(source):
     links, link_problems, link_warnings = _links(parsed.links, moved, visual | collision, visual)
     joints, joint_problems, joint_warnings = _joints(parsed.joints, stated)
     description = RobotDescription(name, root_link(robot) if is_whole else '', tuple(links),
-                                   tuple(joints), tuple(link_warnings + joint_warnings))
+                                   tuple(joints), tuple(link_warnings + joint_warnings),
+                                   plugins)
     # Of parts, only what makes them parts: read_urdf says the rest when that is mended.
     return Examination(description, tuple(problems or link_problems + joint_problems), is_whole,
                        unread)
@@ -113,6 +115,12 @@ def _element(source):
         raise RobotDescriptionError(['it contains xacro elements: expand it first, with '
                                      '`xacro robot.urdf.xacro > robot.urdf`'])
     return robot, robot.get('name') or 'robot'
+
+
+def _hardware_plugins(robot):
+    # For safety alone: some drivers compensate gravity themselves.
+    texts = (plugin.text or '' for plugin in robot.findall('ros2_control/hardware/plugin'))
+    return tuple(dict.fromkeys(text.strip() for text in texts if text.strip()))
 
 
 def _needed(element):

@@ -1,320 +1,344 @@
-"""The output as a whole, with a clock that the test turns."""
+"""Ramps, steps and stops, with a clock that the test turns."""
 
-import math
-
-from dynamics_node.safety import EffortOutput
+from dynamics_node.safety import EffortLimiter, EffortOutput, OutputSettings, OutputState
 from dynamics_node.safety.effort_output import (
     LONGEST_SATURATION,
-    MAX_RESTARTS,
-    OutputSettings,
-    SHORTEST_LOOK,
-    STOP_STEP,
+    MAX_FAULT_RAMP,
+    MAX_PERIODS,
+    MAX_RAMP_STEP,
+    STOP_PERIOD,
+    ZERO_WITHIN,
 )
-from hypothesis import given
-from hypothesis import strategies as st
 import numpy as np
 import pytest
 
 LIMITS, RATES = np.array([10.0, 5.0]), np.array([100.0, 50.0])
 TORQUE = np.array([4.0, -2.0])
+PERIOD = 0.01
 
 
-def channel(stop_behavior='ramp_to_zero', limits=LIMITS, **changes):
-    settings = {'state_timeout': 0.1, 'start_ramp': 0.5, 'stop_ramp': 1.0, **changes}
-    unit = EffortOutput(OutputSettings(stop_behavior=stop_behavior, **settings))
-    unit.set_limiter(limits, RATES, np.ones(2))
-    return unit
+class Bench:
+    """An output, and the loop around it: states every PERIOD, ticks, and what was sent."""
 
+    def __init__(self, stop_behavior='ramp_to_zero', limits=LIMITS, rates=RATES, **changes):
+        settings = {'state_timeout': 0.1, 'start_ramp': 0.5, 'stop_ramp': 1.0, **changes}
+        self.states = []
+        self.output = EffortOutput(
+            OutputSettings(stop_behavior=stop_behavior, **settings),
+            lambda state, reason: self.states.append(
+                (state.name, self.sent[-1].tolist() if self.sent else None)))
+        self.output.set_limiter(EffortLimiter(limits, rates, np.ones(2)))
+        self.now, self.sent, self.times = 0.0, [], []
 
-def active(**options):
-    """Return a channel that is ACTIVE at t = 1 with the whole torque out."""
-    unit = channel(**options)
-    unit.enable(0.0)
-    for now in np.arange(0.0, 1.001, 0.01):
-        unit.on_effort(now, TORQUE)
-    assert unit.machine.name == 'ACTIVE'
-    np.testing.assert_array_equal(unit.limiter.last, TORQUE)
-    return unit
+    def _publish(self, command):
+        if command is not None:
+            self.sent.append(command)
+            self.times.append(self.now)
+            self.output.published(self.now)
+        return command
 
+    def start(self):
+        self.output.start(self.now, self.output.limiter.last)
+        return self
 
-def stopped(unit, now):
-    """Tick until nothing more comes; return the commands."""
-    commands = []
-    while (command := unit.tick(now, 0.0)) is not None:
-        commands.append(command)
-        now += 0.01
-        assert len(commands) < 500
-    return np.array(commands)
+    def follow(self, effort=TORQUE, seconds=0.0, period=PERIOD):
+        """Take states for some time, at least one."""
+        end = self.now + seconds
+        while True:
+            self.now += period
+            command = self._publish(self.output.follow(self.now, np.array(effort), period))
+            if self.now >= end - 1e-9:
+                return command
+
+    def tick(self, seconds, period=STOP_PERIOD):
+        """Tick for some time; return what was sent."""
+        begin, end = len(self.sent), self.now + seconds
+        while self.now < end - 1e-9:
+            self.now += period
+            self._publish(self.output.between(self.now))
+        return np.array(self.sent[begin:])
+
+    def active(self):
+        """Return self, ACTIVE with the whole torque out."""
+        self.start().follow(seconds=1.0)
+        assert self.name == 'ACTIVE'
+        np.testing.assert_array_equal(self.sent[-1], TORQUE)
+        return self
+
+    @property
+    def name(self):
+        return self.output.machine.name
 
 
 def test_nothing_goes_out_while_off():
-    unit = channel()
-    assert unit.on_effort(0.0, TORQUE) is None
-    assert unit.tick(0.0, math.inf) is None
-    assert unit.machine.name == 'READY'
+    bench = Bench()
+    assert bench.follow() is None
+    assert bench.tick(0.1).size == 0
+    assert bench.name == 'READY'
 
 
 def test_the_start_ramps_from_zero_to_the_torque():
-    unit = channel()
-    unit.enable(0.0)
-    np.testing.assert_array_equal(unit.on_effort(0.0, TORQUE), [0, 0])
-    np.testing.assert_allclose(unit.on_effort(0.25, TORQUE), TORQUE / 2)
-    np.testing.assert_allclose(unit.on_effort(0.5, TORQUE), TORQUE)
-    assert unit.machine.name == 'ACTIVE'
+    bench = Bench().start()
+    bench.follow(seconds=0.25)
+    np.testing.assert_allclose(bench.sent[-1], 0.5 * TORQUE, rtol=0.05)
+    bench.follow(seconds=0.3)
+    np.testing.assert_array_equal(bench.sent[-1], TORQUE)
+    assert [name for name, _ in bench.states] == ['STARTING', 'ACTIVE']
 
 
-def test_the_rate_limit_counts_from_when_the_last_command_went_out():
-    unit = channel(start_ramp=0.0)
-    unit.enable(0.0)
-    np.testing.assert_allclose(unit.on_effort(0.01, TORQUE), [1.0, -0.5])
-    unit.published(0.018)
-    np.testing.assert_allclose(unit.on_effort(0.02, TORQUE), [1.2, -0.6])
-    unit.published(0.03)
-    unit.stop(0.03, 'disabled on request')
-    unit.tick(0.03, 0.0)
-    np.testing.assert_allclose(unit.limiter.last, [1.2, -0.6])
+def test_active_is_said_after_the_full_effort_has_gone_out_and_not_before():
+    # Rate limits so small that the effort is far from full when the ramp's time is over.
+    bench = Bench(rates=np.array([2.0, 2.0])).start()
+    bench.follow(seconds=1.0)
+    assert bench.name == 'STARTING'
+    assert abs(bench.sent[-1][0]) < 0.6 * TORQUE[0]
+    bench.follow(seconds=1.5)
+    assert bench.states[-1] == ('ACTIVE', TORQUE.tolist())
+
+
+def test_a_slow_stream_of_states_does_not_skip_the_ramp():
+    # States once a second; in between the ramp goes on by ticks.
+    bench = Bench(state_timeout=2.0).start()
+    bench.follow(period=1.0)
+    bench.tick(0.99)
+    bench.follow(period=0.01)
+    steps = np.abs(np.diff([np.zeros(2), *bench.sent], axis=0))
+    assert (steps <= RATES * STOP_PERIOD + 1e-12).all()
+    np.testing.assert_array_equal(bench.sent[-1], TORQUE)
+    assert len(bench.sent) > 40
+
+
+def test_a_step_is_limited_by_nominal_periods_and_not_by_the_length_of_a_gap():
+    bench = Bench().active()
+    bench.now += 0.099 - 0.002
+    bench.follow(-TORQUE, period=0.002)  # the first state after the gap has the other sign
+    step = np.abs(bench.sent[-1] - bench.sent[-2])
+    np.testing.assert_allclose(step, RATES * MAX_PERIODS * 0.002)
+
+
+def test_a_pause_of_the_process_does_not_skip_a_ramp():
+    for begin in (lambda bench: bench.start(), lambda bench: bench.active()):
+        bench = begin(Bench())
+        bench.follow()
+        if bench.name == 'ACTIVE':
+            bench.output.stop(bench.now, 'test')
+            bench.tick(0.05)
+        bench.now += 5.0
+        before = bench.sent[-1]
+        if bench.name == 'STOPPING':
+            bench.tick(STOP_PERIOD)
+        else:
+            bench.follow()
+        assert (np.abs(bench.sent[-1] - before) <= 2.1 * MAX_RAMP_STEP * np.abs(TORQUE)).all()
 
 
 def test_a_stop_ramps_to_zero_and_ends_with_zeros():
-    unit = active()
-    unit.stop(1.0, 'disabled on request')
-    assert unit.on_effort(1.0, TORQUE) is None
-    commands = stopped(unit, 1.0)
-    np.testing.assert_allclose(commands[50], TORQUE / 2, rtol=0.03)
-    np.testing.assert_array_equal(commands[-1], [0, 0])
-    assert unit.machine.name == 'READY'
+    bench = Bench().active()
+    bench.output.stop(bench.now, 'test')
+    commands = bench.tick(1.5)
+    np.testing.assert_array_equal(commands[-1], [0.0, 0.0])
+    assert (np.diff(np.abs(commands[:, 0])) <= 0).all()
+    assert len(commands) * STOP_PERIOD == pytest.approx(1.0, abs=0.03)
+    assert bench.states[-1] == ('READY', [0.0, 0.0])
 
 
-def test_zero_stops_as_fast_as_the_rate_limits_allow():
-    unit = active(stop_behavior='zero')
-    unit.stop(1.0, 'disabled on request')
-    commands = stopped(unit, 1.01)
-    np.testing.assert_allclose(commands[0], [3.0, -1.5])
-    np.testing.assert_array_equal(commands[-1], [0, 0])
-    assert len(commands) <= 6
+@pytest.mark.parametrize('rates', [RATES, np.full(2, 1e-6)])
+@pytest.mark.parametrize('behavior, ramp', [('zero', 60.0), ('ramp_to_zero', 0.0),
+                                            ('ramp_to_zero', 0.3)])
+def test_every_stop_ends_in_time_whatever_the_rate_limits_say(behavior, ramp, rates):
+    bench = Bench(behavior, stop_ramp=ramp).active()
+    bench.output.set_limiter(EffortLimiter(LIMITS, rates, np.ones(2)))
+    bench.output.stop(bench.now, 'test')
+    bench.tick(ZERO_WITHIN + 0.05)
+    assert bench.name == 'READY'
+    np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
 
 
-def test_hold_leaves_the_last_command_in_force():
-    unit = active(stop_behavior='hold')
-    unit.stop(1.0, 'disabled on request')
-    assert len(stopped(unit, 1.0)) == 0
-    np.testing.assert_array_equal(unit.limiter.last, TORQUE)
-    assert unit.machine.name == 'READY'
-    assert 'the last efforts stay in force' in unit.machine.reason
+def test_lower_limits_do_not_slow_the_stop():
+    bench = Bench().active()
+    bench.output.set_limiter(EffortLimiter(LIMITS / 100, RATES / 100, np.ones(2)))
+    bench.output.stop(bench.now, 'test', is_fault=True)
+    bench.tick(1.1)
+    assert bench.name == 'FAULT'
+    np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
 
 
-def test_enabling_after_hold_starts_from_what_was_held():
-    unit = active(stop_behavior='hold')
-    unit.stop(1.0, 'disabled on request')
-    stopped(unit, 1.0)
-    unit.enable(5.0)
-    np.testing.assert_allclose(unit.on_effort(5.0, TORQUE / 2), TORQUE)
-    np.testing.assert_allclose(unit.on_effort(5.25, TORQUE / 2), 0.75 * TORQUE)
-    np.testing.assert_allclose(unit.on_effort(5.5, TORQUE / 2), TORQUE / 2)
+def test_a_fault_has_a_short_ramp_and_hastens_a_long_one():
+    bench = Bench(stop_ramp=60.0).active()
+    bench.output.stop(bench.now, 'disabled')
+    bench.tick(5.0)
+    assert abs(bench.sent[-1][0]) > 0.9 * TORQUE[0]
+    bench.output.stop(bench.now, 'runaway', is_fault=True)
+    bench.tick(MAX_FAULT_RAMP + 0.05)
+    assert bench.name == 'FAULT'
+    assert bench.output.machine.reason == 'runaway'
+
+
+def test_a_stop_is_hastened_when_the_process_has_to_end_and_never_slowed():
+    bench = Bench(stop_ramp=60.0).active()
+    bench.output.stop(bench.now, 'SIGTERM', within=2.5)
+    bench.tick(0.5)
+    bench.output.stop(bench.now, 'SIGTERM', within=0.3)
+    bench.output.stop(bench.now, 'SIGTERM', within=2.5)
+    bench.tick(0.35)
+    assert bench.name == 'READY'
+    np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
+
+
+def test_hold_leaves_the_last_command_in_force_and_is_a_state_of_its_own():
+    bench = Bench('hold').active()
+    count = len(bench.sent)
+    bench.output.stop(bench.now, 'stale', is_fault=True, may_hold=True)
+    assert bench.name == 'HOLDING'
+    assert bench.output.has_effort_in_force
+    assert bench.tick(0.5).size == 0
+    assert len(bench.sent) == count
+    # Released: by the stop ramp, and the fault that was latched meanwhile stays.
+    bench.output.stop(bench.now, 'disabled on request')
+    commands = bench.tick(1.1)
+    assert (np.abs(np.diff(commands[:, 0])) <= 0.05 * TORQUE[0]).all()
+    assert bench.name == 'FAULT'
+    assert not bench.output.has_effort_in_force
+
+
+def test_what_must_not_be_held_is_not():
+    bench = Bench('hold').active()
+    bench.output.stop(bench.now, 'runaway', is_fault=True)
+    bench.tick(1.1)
+    assert bench.name == 'FAULT'
+    np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
+
+
+def test_a_start_after_hold_begins_at_what_is_held():
+    bench = Bench('hold').active()
+    bench.output.stop(bench.now, 'stale', is_fault=True, may_hold=True)
+    bench.now += 4.0
+    bench.start().follow()
+    np.testing.assert_allclose(bench.sent[-1], TORQUE)
+    bench.follow(seconds=0.6)
+    assert bench.name == 'ACTIVE'
+    assert bench.output.machine.fault == ''
 
 
 def test_what_was_held_belongs_to_its_joints():
-    unit = active(stop_behavior='hold')
-    unit.stop(1.0, 'disabled on request')
-    stopped(unit, 1.0)
-    unit.set_limiter(LIMITS, RATES, np.ones(2), ('of another', 'robot'))
-    unit.enable(5.0)
-    np.testing.assert_array_equal(unit.on_effort(5.0, TORQUE), [0, 0])
-
-
-def test_a_stale_state_stops_and_latches_with_both_numbers():
-    unit = active()
-    assert unit.tick(1.05, 0.05) is None
-    unit.tick(1.134, 0.134)
-    assert unit.machine.name == 'STOPPING'
-    stopped(unit, 1.14)
-    assert (unit.machine.name, unit.machine.reason) == (
-        'FAULT', 'joint_states stale: last 0.134 s ago, limit 0.100 s')
+    bench = Bench('hold').active()
+    bench.output.stop(bench.now, 'stale', may_hold=True)
+    bench.output.set_limiter(EffortLimiter(LIMITS, RATES, np.ones(2), ('other', 'joints')))
+    np.testing.assert_array_equal(bench.output.limiter.last, [0.0, 0.0])
 
 
 def test_an_effort_that_is_not_finite_stops_from_the_last_valid_one():
-    unit = active()
-    assert unit.on_effort(1.01, np.array([np.nan, 0.0])) is None
-    commands = stopped(unit, 1.01)
-    np.testing.assert_allclose(commands[0], TORQUE, rtol=0.02)
-    assert unit.machine.name == 'FAULT'
-    assert 'invalid effort' in unit.machine.reason
-
-
-def test_a_stop_is_bounded_when_the_process_has_to_end():
-    unit = active(stop_ramp=60.0)
-    unit.stop(1.0, 'SIGINT', within=2.5)
-    assert len(stopped(unit, 1.0)) <= 252
-    unit = active(stop_ramp=60.0)
-    unit.stop(1.0, 'disabled on request')
-    unit.tick(2.0, 0.0)
-    unit.stop(2.0, 'SIGINT', within=2.5)
-    assert len(stopped(unit, 2.0)) <= 252
-
-
-def test_a_stop_during_the_start_begins_from_what_was_reached():
-    unit = channel()
-    unit.enable(0.0)
-    unit.on_effort(0.0, TORQUE)
-    reached = unit.on_effort(0.1, TORQUE)
-    unit.stop(0.1, 'disabled on request')
-    assert (np.abs(stopped(unit, 0.1)) <= np.abs(reached) + 1e-12).all()
-
-
-def test_enabling_again_starts_from_zero():
-    unit = active()
-    unit.stop(1.0, 'disabled on request')
-    assert not unit.enable(1.1)
-    stopped(unit, 1.1)
-    assert unit.enable(5.0)
-    np.testing.assert_array_equal(unit.on_effort(5.0, TORQUE), [0, 0])
-
-
-def test_new_limits_while_active_are_approached_at_the_rate():
-    unit = active()
-    unit.set_limiter(LIMITS / 5, RATES, np.ones(2))
-    np.testing.assert_allclose(unit.on_effort(1.01, TORQUE), [3.0, -1.5])
-    np.testing.assert_allclose(unit.on_effort(1.02, TORQUE), [2.0, -1.0])
-    np.testing.assert_allclose(unit.on_effort(1.10, TORQUE), LIMITS / 5 * [1, -1])
-    unit.set_limiter(LIMITS, RATES, np.ones(2))
-    np.testing.assert_allclose(unit.on_effort(1.11, TORQUE), [3.0, -1.5])
+    bench = Bench().active()
+    assert bench.follow([np.nan, 0.0]) is None
+    assert bench.name == 'STOPPING'
+    commands = bench.tick(1.1)
+    np.testing.assert_allclose(commands[0], TORQUE, rtol=0.05)
+    assert bench.name == 'FAULT'
+    assert 'invalid effort: expected finite efforts' in bench.output.machine.reason
 
 
 def test_limits_that_are_no_numbers_cannot_keep_a_stop_from_ending():
-    unit = active()
-    unit.set_limiter(np.full(2, np.nan), np.full(2, np.nan), np.ones(2))
-    assert unit.on_effort(1.01, TORQUE) is None
-    commands = stopped(unit, 1.01)
-    np.testing.assert_array_equal(commands[-1], [0, 0])
-    assert unit.machine.name == 'FAULT'
+    bench = Bench().active()
+    bench.output.set_limiter(EffortLimiter(np.full(2, np.nan), np.full(2, np.nan), np.ones(2)))
+    bench.output.stop(bench.now, 'test', is_fault=True)
+    bench.tick(1.1)
+    assert bench.name == 'FAULT'
 
 
-EVENTS = st.one_of(
-    st.just(('enable',)), st.just(('stop',)), st.just(('fault',)),
-    st.tuples(st.just('tick'), st.floats(0, 0.2)),
-    st.tuples(st.just('limits'), st.floats(0.05, 1.0)),
-    st.tuples(st.just('effort'), st.floats(allow_nan=True), st.floats(allow_nan=True)))
+def test_a_change_goes_out_over_the_start_ramp_while_the_arm_is_followed():
+    bench = Bench().active()
+    bench.output.blend(TORQUE - 2.0 * TORQUE)  # a payload: from now on twice the torque
+    begin = len(bench.sent)
+    bench.follow(2.0 * TORQUE, seconds=0.25)
+    np.testing.assert_allclose(bench.sent[-1], 1.5 * TORQUE, rtol=0.05)
+    bench.follow(2.0 * TORQUE, seconds=0.3)
+    np.testing.assert_array_equal(bench.sent[-1], 2.0 * TORQUE)
+    steps = np.abs(np.diff(np.array(bench.sent[begin - 1:]), axis=0))
+    assert (steps <= 1.05 * np.abs(TORQUE) * PERIOD / 0.5 + 1e-12).all()
+    assert bench.name == 'ACTIVE'
 
 
-@given(st.sampled_from(['ramp_to_zero', 'zero', 'hold']),
-       st.lists(st.tuples(st.floats(0, 0.5), EVENTS), max_size=60))
-def test_no_sequence_of_events_publishes_what_must_not_be_published(behavior, events):
-    unit = channel(stop_behavior=behavior)
-    now, last, last_time = 0.0, np.zeros(2), 0.0
-    for step, (event, *values) in events:
-        now += step
-        command = None
-        if event == 'enable':
-            if unit.enable(now):
-                last_time = now
-        elif event in ('stop', 'fault'):
-            unit.stop(now, event, is_fault=event == 'fault')
-        elif event == 'limits':
-            unit.set_limiter(LIMITS * values[0], RATES, np.ones(2))
-        elif event == 'tick':
-            was_on = unit.machine.is_on
-            command = unit.tick(now, values[0])
-            assert command is None or was_on
-        else:
-            was_driving = unit.machine.is_driving
-            command = unit.on_effort(now, np.array(values))
-            assert command is None or was_driving
-        if command is not None:
-            assert command.shape == (2,)
-            assert np.isfinite(command).all()
-            assert (np.abs(command) <= LIMITS).all()
-            allowed = RATES * (now - last_time) * (1 + 1e-9) + 1e-12
-            assert (np.abs(command - last) <= allowed).all()
-            last, last_time = command, now
+def test_many_small_changes_never_add_up_to_a_step():
+    bench = Bench().active()
+    total = 1.0
+    for _ in range(100):
+        total += 0.01
+        bench.output.blend(-0.01 * TORQUE)
+        bench.follow(total * TORQUE)
+    steps = np.abs(np.diff(np.array(bench.sent[-101:]), axis=0))
+    assert (steps <= 0.0101 * np.abs(TORQUE)).all()
+    assert 1.3 < bench.sent[-1][0] / TORQUE[0] < 2.0  # it lags by the ramp
+    bench.follow(total * TORQUE, seconds=0.6)
+    np.testing.assert_allclose(bench.sent[-1], total * TORQUE)
 
 
-def test_the_next_look_is_when_the_newest_state_becomes_stale_or_a_stop_goes_on():
-    unit = active(state_timeout=0.1)
-    assert unit.next_look(0.03) == pytest.approx(0.07)
-    assert unit.next_look(0.1) == SHORTEST_LOOK
-    assert unit.next_look(math.inf) == SHORTEST_LOOK
-    unit.stop(1.1, 'on request')
-    assert unit.next_look(0.03) == STOP_STEP
+def test_a_change_during_the_start_takes_its_own_time():
+    bench = Bench().start()
+    bench.follow(seconds=0.45)
+    bench.output.blend(TORQUE - 2.0 * TORQUE)
+    begin = len(bench.sent)
+    bench.follow(2.0 * TORQUE, seconds=0.6)
+    steps = np.abs(np.diff(np.array(bench.sent[begin - 1:]), axis=0))
+    assert (steps <= 2.2 * np.abs(TORQUE) * PERIOD / 0.5).all()
+    assert bench.states[-1][0] == 'ACTIVE'
+    np.testing.assert_allclose(bench.sent[-1], 2.0 * TORQUE)
 
 
-def test_a_restart_goes_from_the_last_command_to_the_new_torque_by_the_start_ramp():
-    unit = active()
-    unit.restart(1.0, 'the clock went back')
-    assert unit.machine.name == 'STARTING'
-    np.testing.assert_allclose(unit.on_effort(1.0, -TORQUE), TORQUE)
-    np.testing.assert_allclose(unit.on_effort(1.25, -TORQUE), 0.0 * TORQUE, atol=1e-12)
-    np.testing.assert_allclose(unit.on_effort(1.5, -TORQUE), -TORQUE)
-    assert unit.machine.name == 'ACTIVE'
-
-
-def test_restarts_that_let_no_start_end_are_a_fault():
-    unit, now = active(), 1.0
-
-    def restart(times, pause):
-        nonlocal now
-        for _ in range(times):
-            unit.restart(now, 'the clock went back')
-            for step in np.arange(0.0, pause, 0.01):
-                unit.on_effort(now + step, -TORQUE)
-            now += pause
-    restart(2 * MAX_RESTARTS, 0.6)
-    assert unit.machine.name == 'ACTIVE'
-    restart(MAX_RESTARTS, 0.1)
-    assert unit.machine.name == 'STARTING'
-    restart(1, 0.1)
-    assert unit.machine.name == 'STOPPING'
-    assert unit.machine.fault == ('the clock went back, 4 times before the start ramp was over')
-    stopped(unit, now)
-    assert unit.enable(now + 2.0)
-    unit.restart(now + 2.0, 'the clock went back')
-    assert unit.machine.name == 'STARTING'
-
-
-def test_a_fault_of_the_arm_stops_an_output_that_is_on_and_only_that():
-    unit = channel()
-    unit.fault(0.0, 'runaway')
-    assert unit.machine.name == 'READY'
-    unit = active()
-    unit.fault(1.0, 'runaway')
-    assert unit.machine.name == 'STOPPING'
-    stopped(unit, 1.0)
-    assert (unit.machine.name, unit.machine.reason) == ('FAULT', 'runaway')
-    # While it stops on request, a fault latches too.
-    unit = active()
-    unit.stop(1.0, 'disabled on request')
-    unit.fault(1.1, 'runaway')
-    stopped(unit, 1.1)
-    assert unit.machine.name == 'FAULT'
+def test_small_changes_without_end_do_not_put_active_off():
+    bench = Bench().start()
+    for _ in range(100):
+        bench.output.blend(np.full(2, 1e-4))
+        bench.follow()
+    assert bench.name == 'ACTIVE'
 
 
 def test_an_effort_above_its_limit_for_too_long_is_a_fault_and_a_moment_is_not():
-    too_much = np.array([40.0, 0.0])
-
-    def run(unit, start, seconds, effort):
-        for now in start + np.arange(0.0, seconds, 0.01):
-            unit.on_effort(now, effort)
-        return start + seconds
-    unit = active()
-    now = run(unit, 1.01, LONGEST_SATURATION - 0.1, too_much)
-    now = run(unit, now, 0.05, TORQUE)
-    now = run(unit, now, LONGEST_SATURATION - 0.1, too_much)
-    assert unit.machine.name == 'ACTIVE'
-    run(unit, now, 0.2, too_much)
-    assert unit.machine.name == 'STOPPING'
-    assert unit.machine.reason == 'effort above its limit for 2 s: joint 0: 40 limited to 10'
-    assert unit.machine.fault
+    bench = Bench().active()
+    bench.follow(3.0 * TORQUE, seconds=LONGEST_SATURATION - 0.1)
+    bench.follow(TORQUE)
+    bench.follow(3.0 * TORQUE, seconds=LONGEST_SATURATION - 0.1)
+    assert bench.name == 'ACTIVE'
+    bench.follow(3.0 * TORQUE, seconds=0.3)
+    assert bench.name == 'STOPPING'
+    assert bench.output.machine.fault == (
+        'effort above its limit for 2 s: joint 0: 12 limited to 10; joint 1: -6 limited to 5')
 
 
-def test_an_arm_that_must_not_be_driven_is_not_held_either():
-    unit = active(stop_behavior='hold')
-    unit.fault(1.0, 'runaway')
-    np.testing.assert_array_equal(stopped(unit, 1.0)[-1], [0, 0])
-    assert (unit.machine.name, unit.machine.reason) == ('FAULT', 'runaway')
+def test_a_controller_that_is_gone_ends_it_at_once_and_keeps_what_the_hardware_may_hold():
+    bench = Bench().active()
+    count = len(bench.sent)
+    bench.output.abandon('controller deactivated')
+    assert bench.name == 'FAULT'
+    assert bench.tick(0.5).size == 0
+    assert len(bench.sent) == count
+    assert bench.output.has_effort_in_force
+    np.testing.assert_array_equal(bench.output.limiter.last, TORQUE)
 
 
-def test_a_fault_takes_away_what_a_stop_has_just_begun_to_hold():
-    unit = active(stop_behavior='hold')
-    unit.stop(1.0, 'disabled on request')
-    unit.fault(1.005, 'runaway')
-    np.testing.assert_array_equal(stopped(unit, 1.01)[-1], [0, 0])
-    assert (unit.machine.name, unit.machine.reason) == ('FAULT', 'runaway')
+def test_a_fault_while_off_latches_at_once():
+    bench = Bench()
+    bench.output.stop(0.0, 'internal error', is_fault=True)
+    assert bench.name == 'FAULT'
+    bench.start()
+    assert bench.output.machine.fault == ''
+
+
+def test_the_next_tick_is_that_of_a_ramp_or_none():
+    bench = Bench()
+    assert bench.output.next_tick_in(0.0) == np.inf
+    bench.start()
+    assert bench.output.next_tick_in(bench.now) == np.inf  # no state yet, nothing to go on with
+    bench.follow()
+    assert bench.output.next_tick_in(bench.now) == pytest.approx(STOP_PERIOD)
+    bench.follow(seconds=1.0)
+    assert bench.output.next_tick_in(bench.now) == np.inf
+    bench.output.stop(bench.now, 'test')
+    assert bench.output.next_tick_in(bench.now) == STOP_PERIOD
+
+
+def test_every_stop_reason_is_told():
+    bench = Bench().active()
+    bench.output.stop(bench.now, 'disabled on request')
+    bench.tick(1.1)
+    assert bench.output.machine.reason == 'stopped: disabled on request'
+    assert OutputState[bench.name] == OutputState.READY

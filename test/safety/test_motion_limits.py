@@ -3,7 +3,7 @@
 import math
 
 from dynamics_node.safety import MotionLimits
-from dynamics_node.safety.motion_limits import SHORTEST_STEP, VELOCITY_MARGIN
+from dynamics_node.safety.motion_limits import JUMP_MARGIN, SHORTEST_STEP
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
@@ -19,9 +19,9 @@ EVERY = (0, 1, 2)
 @pytest.mark.parametrize('step, dt, is_impossible', [
     (0.59, 0.1, False), (0.61, 0.1, True), (-0.61, 0.1, True),
     # Two messages on each other's heels: still the shortest step.
-    (VELOCITY_MARGIN * 3.0 * SHORTEST_STEP * 0.99, 0.0, False),
-    (VELOCITY_MARGIN * 3.0 * SHORTEST_STEP * 1.01, 0.0, True),
-    (VELOCITY_MARGIN * 3.0 * SHORTEST_STEP * 1.01, -5.0, True),
+    (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 0.99, 0.0, False),
+    (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 1.01, 0.0, True),
+    (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 1.01, -5.0, True),
     (1e300, 1.0, True), (1e300, math.inf, False)])
 def test_a_step_beyond_twice_the_velocity_limit_is_impossible(step, dt, is_impossible):
     for joint in (0, 1):
@@ -52,11 +52,24 @@ def test_of_a_joint_without_limits_everything_is_believed():
     assert everything.outside((0,), (1e300,)) == ''
 
 
-def test_a_runaway_is_a_joint_beyond_twice_its_velocity_limit():
-    assert LIMITS.runaway(EVERY, (5.9, -5.9, 0.0)) == ''
-    assert LIMITS.runaway(EVERY, (0.0, -6.1, 0.0)) == 'wheel at -6.1 (limit 3)'
-    assert LIMITS.runaway((0,), (0.0, -6.1, 0.0)) == ''
+def test_a_runaway_is_a_joint_above_its_velocity_limit():
+    assert LIMITS.runaway(EVERY, (2.9, -2.9, 0.0)) == ''
+    assert LIMITS.runaway(EVERY, (0.0, -3.1, 0.0)) == 'wheel at -3.1 (limit 3)'
+    assert LIMITS.runaway((0,), (0.0, -3.1, 0.0)) == ''
     assert LIMITS.runaway(EVERY, (math.nan, math.nan, math.nan)) == ''
+
+
+def test_the_allowed_velocity_decides_on_runaway_and_the_possible_one_on_jumps():
+    def limits(allowed):
+        return MotionLimits(('hinge',), np.array([3.0]), np.array([[-1.0, 2.0]]),
+                            np.array([False]), np.array([allowed]))
+    slow, fast, free = limits(0.5), limits(10.0), limits(math.nan)
+    assert slow.runaway((0,), (0.6,)) == 'hinge at 0.6 (limit 0.5)'
+    assert fast.runaway((0,), (9.9,)) == free.runaway((0,), (1e9,)) == ''
+    assert not slow.is_impossible(0, 0.0, 0.59, 0.1)  # the joint can do that
+    assert slow.is_impossible(0, 0.0, 0.61, 0.1)
+    assert not fast.is_impossible(0, 0.0, 1.9, 0.1)
+    assert fast.is_impossible(0, 0.0, 2.1, 0.1)
 
 
 def test_joints_beyond_their_position_limits_are_named():

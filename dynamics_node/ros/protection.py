@@ -1,0 +1,90 @@
+"""The checks that go on while efforts are sent: other publishers, and the controllers."""
+
+import time
+
+from rclpy.clock import Clock, ClockType
+
+from .guard import logged
+
+# How often other publishers and the controllers are looked for, s: while efforts are sent, and
+# while the output is off, when only the controllers' lifecycle is followed.
+CHECK_EVERY = 0.2
+IDLE_EVERY = 1.0
+
+
+class Protection:
+    """
+    Stops the output when another source of efforts appears or a controller does not fit.
+
+    A check that fails is noticed by the torque path, which stops when the last check that passed
+    is too long ago.
+
+    """
+
+    def __init__(self, node, output, monitor, controllers, get_robot):
+        """
+        Begin to check.
+
+        Parameters
+        ----------
+        node : rclpy.node.Node
+        output : CommandOutput
+        monitor : PublisherMonitor
+        controllers : Controllers
+        get_robot : callable() -> Robot or None
+
+        """
+        self.logger = node.get_logger()
+        self._output = output
+        self._path = output.path
+        self._monitor = monitor
+        self._controllers = controllers
+        self._get_robot = get_robot
+        self._had_listener = True
+        self._was_driving = False
+        self._next_idle = 0.0
+        node.create_timer(CHECK_EVERY, self._check, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    @logged
+    def _check(self):
+        now = time.monotonic()
+        if self._path.is_driving:
+            self._check_driven(now)
+        else:
+            self._was_driving = False
+            if self._path.is_on or now >= self._next_idle:
+                self._next_idle = now + IDLE_EVERY
+                self._follow_controllers(now)
+
+    def _check_driven(self, now):
+        if not self._was_driving:
+            self._was_driving, self._had_listener = True, self._controllers.has_listener()
+        conflicts = self._monitor.conflicts()
+        if conflicts:
+            self._path.fault(now, '; '.join(conflicts))
+            return
+        self._follow_controllers(now)
+        has_listener = self._controllers.has_listener()
+        if self._path.is_driving and has_listener and not self._had_listener:
+            # It has missed the start ramp and would get the whole effort at once.
+            names = ', '.join(sorted(self._controllers.listeners)) or 'a listener'
+            self._path.restart_from_zero(now, f'{names} has begun to listen to the commands')
+        self._had_listener = has_listener
+        self._path.monitored(time.monotonic())
+
+    def _follow_controllers(self, now):
+        before = {name for name, item in self._controllers.listeners.items()
+                  if item.is_controller}
+        self._controllers.update()
+        if not self._path.is_on:
+            return
+        inactive = [reason for item in self._controllers.listeners.values()
+                    for reason in item.inactive()]
+        gone = [f'{name} no longer listens to the commands'
+                for name in sorted(before - set(self._controllers.listeners))]
+        if inactive or gone:
+            self._path.lose_controller(now, '; '.join(inactive + gone))
+            return
+        mismatches = self._controllers.refusals(self._get_robot().joint_names)
+        if mismatches:
+            self._path.fault(now, '; '.join(mismatches))
