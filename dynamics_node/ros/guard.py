@@ -3,6 +3,7 @@
 import functools
 import time
 import traceback
+import weakref
 
 # An error that keeps coming is logged at most this often per callback, s.
 LOG_EVERY = 1.0
@@ -68,15 +69,15 @@ class _ErrorLog:
 
     def __init__(self, method):
         self._name = method.__name__
-        self._next = float('-inf')
-        self._left_out = 0
+        # Owner → when the next report is due, and how many errors were left out.
+        self._reports: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
 
     def __call__(self, owner, error):
         now = time.monotonic()
-        if now < self._next:
-            self._left_out += 1
+        due, left_out = self._reports.get(owner, (now, 0))
+        if now < due:
+            self._reports[owner] = due, left_out + 1
             return
-        self._next = now + LOG_EVERY
-        more = f' ({self._left_out} more since the last report)' if self._left_out else ''
-        self._left_out = 0
+        self._reports[owner] = now + LOG_EVERY, 0
+        more = f' ({left_out} more since the last report)' if left_out else ''
         owner.logger.error(f'{self._name}: {error}{more}\n{traceback.format_exc()}')

@@ -5,6 +5,7 @@ from dynamics_node.ros.change_check import check_change
 from dynamics_node.ros.model_settings import configured
 from dynamics_node.ros.parameter_table import check_all, ParameterError
 from dynamics_node.ros.robot import Robot
+from dynamics_node.safety import GravityChange
 import numpy as np
 import pytest
 from support.robots import ARM7, PENDULUM
@@ -27,7 +28,9 @@ def change(before, after, urdf=ARM7):
     robot.configure(before)
     robot.buffer.update(0.0, list(robot.joint_names), Q[:len(robot.joint_names)])
     values = check_all(after)
-    check_change(robot, configured(robot, values, before), values, before)
+    gravity = GravityChange()
+    gravity.begin(0.0, before['gravity'])
+    check_change(robot, configured(robot, values, before), values, before, gravity, 0.0)
 
 
 LIMITS = {'effort_limits': [1.0] * N}
@@ -39,7 +42,7 @@ SCALED = {'effort_scale': [4.0] * N}
     ({}, LIMITS), (payload(1.0), LIMITS | payload(1.0)),
     # Stuck at its limit it is anyway: a base that tilts must be followed, and less be possible.
     (payload(500.0), payload(499.0)), (payload(500.0), {}), (payload(500.0), payload(501.0)),
-    ({}, {'gravity': (6.9, 0.0, -6.9)}), ({'gravity': (0.0,) * 3}, {'gravity': (0.0,) * 3}),
+    ({}, {'gravity': (4.0, 0.0, -9.0)}), ({'gravity': (0.0,) * 3}, {'gravity': (0.0,) * 3}),
     ({}, {'effort_scale': [1.1] * N}), (SCALED, {}),
 ], ids=str)
 def test_what_the_arm_can_follow_is_possible(before, after):
@@ -54,8 +57,12 @@ def test_what_the_arm_can_follow_is_possible(before, after):
     # Nor is what turns round there: the effort would go from one limit to the other.
     (payload(500.0), payload(500.0, com=(0.0, 0.0, -3.0)), 'above the limit: shoulder_pitch: 109'),
     ({}, SCALED, 'above the limit: shoulder_pitch'),
-    ({}, {'gravity': (0.0, 0.0, 9.81)}, 'by 90 degrees or more'),
-    ({}, {'gravity': (9.81, 0.0, 0.0)}, 'by 90 degrees or more'),
+    ({}, {'gravity': (0.0, 0.0, 9.81)}, 'points up .* set allow_upward_gravity'),
+    ({'allow_upward_gravity': True}, {'allow_upward_gravity': True, 'gravity': (0.0, 0.0, 9.81)},
+     'at most 30 degrees at once'),
+    ({}, {'effort_limits': [91.0] * N}, 'effort_limits of shoulder_yaw: 91, in the URDF 90'),
+    ({}, {'gravity': (9.81, 0.0, 0.0)}, 'at most 30 degrees at once'),
+    ({}, {'gravity': (0.0, 0.0, -15.0)}, 'at most 2 m/s'),
     ({}, {'gravity': (0.0, 0.0, 0.0)}, 'not zero while output is on'),
     ({'gravity': (0.0,) * 3}, {'gravity': DOWN}, 'not zero while output is on'),
 ], ids=str)
@@ -84,4 +91,4 @@ def test_a_torque_that_is_no_number_is_above_every_limit():
     with np.errstate(over='ignore'):
         heavy = robot.model.with_payload('hand', 1e308, (0.0, 0.0, 0.06))
     with pytest.raises(ParameterError, match=r'above the limit: .*shoulder_pitch: nan'):
-        check_change(robot, heavy, values, values)
+        check_change(robot, heavy, values, values, GravityChange(), 0.0)

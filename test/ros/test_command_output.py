@@ -7,8 +7,9 @@ import time
 
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node import RobotModel
-from dynamics_node.ros.command_output import CommandOutput
-from dynamics_node.ros.parameter_table import PARAMETERS
+from dynamics_node.ros.command_output import CommandOutput, output_settings
+from dynamics_node.ros.node import _limiter
+from dynamics_node.ros.parameter_table import check_all
 from dynamics_node.ros.robot import Robot
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
+from std_srvs.srv import SetBool
 from support.robots import ARM7, PENDULUM
 
 TOPIC = 'forward_effort_controller/commands'
@@ -57,7 +59,7 @@ def became_active(client, action):
     return is_active()
 
 
-@pytest.mark.parametrize('options', [(), ('--executor', 'rclpy', '--no-raw-states')])
+@pytest.mark.parametrize('options', [(), ('--no-raw-states',)])
 def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(client, start, options):
     start(robot_description_file=PENDULUM, options=options)
     client.record_commands()
@@ -89,7 +91,7 @@ def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(client, st
     assert client.commands == []
 
 
-@pytest.mark.parametrize('options', [(), ('--executor', 'rclpy', '--no-raw-states')])
+@pytest.mark.parametrize('options', [(), ('--no-raw-states',)])
 def test_stale_states_stop_by_the_ramp_and_latch_a_fault(client, start, options):
     start(robot_description_file=PENDULUM, state_timeout=0.1, options=options)
     client.record_commands()
@@ -124,20 +126,22 @@ def test_a_timeout_that_becomes_shorter_holds_at_once(client, start):
 
 def test_parameters_set_without_end_do_not_put_the_watchdog_off(client):
     robot = Robot(RobotModel.from_urdf(PENDULUM), ())
-    parameters = {item.name: item.default for item in PARAMETERS}
-    output = CommandOutput(client.node, parameters, lambda: robot, lambda: None)
-    output.configure()
+    values = check_all({})
+    output = CommandOutput(client.node, values, lambda: None)
+    output.path.use(robot.buffer)
+    output.path.configure(output_settings(values), robot.compensation(values),
+                          _limiter(robot, values), robot.motion_limits(()))
     robot.buffer.update(time.monotonic(), ['hinge'], [0.0])
-    output.channel.enable(time.monotonic())
-    look = output._watchdog.time_until_next_call
-    while (planned := look()) > 5e6:
+    output.enable()
+    next_tick = output._watchdog.time_until_next_call
+    while (planned := next_tick()) > 5e6:
         pass
-    output.configure()
-    assert look() < planned
-    output.channel.restart(time.monotonic(), 'the clock went back')
-    assert look() < planned
-    client.until(lambda: output.channel.machine.name == 'FAULT')
-    assert 'stale' in output.channel.machine.reason
+    output.configured()
+    assert next_tick() < planned
+    output.path.restart_from_zero(time.monotonic(), 'a controller has begun to listen')
+    assert next_tick() < planned
+    client.until(lambda: output.path.state.name == 'FAULT')
+    assert 'stale' in output.path.output.machine.reason
 
 
 def test_half_of_the_joints_alone_do_not_keep_the_output_alive(client, start):
@@ -154,7 +158,14 @@ def test_efforts_are_clamped_to_the_limit_and_not_for_long(client, start):
     start(robot_description_file=PENDULUM, effort_limits='[4]')
     client.record_commands()
     publish = level(client)
-    enabled(client, publish)
+    client.until_heard(publish)
+    refusal = client.enable(True, publish)
+    assert not refusal.success
+    assert 'gravity torque is above the effort limit: hinge: 10.3005, limit 4' in refusal.message
+    # Nearly upright the arm can hold itself; it is then moved to where it cannot.
+    enabled(client, lambda: client.publish(['hinge'], [1.3], [0.0]))
+    for i in range(130):
+        client.during(0.01, lambda q=1.3 - 0.01 * i: client.publish(['hinge'], [q], [0.0]))
     client.during(0.3, publish)
     assert max(effort for _, [effort] in client.commands) == 4.0
     client.until(client.output_is('FAULT'), publish)
@@ -227,13 +238,21 @@ def test_the_command_follows_the_order_of_joints_and_hold_keeps_the_last_effort(
     enabled(client, publish)
     client.during(0.2, publish)
     np.testing.assert_allclose(client.commands[-1][1], expected, rtol=1e-12, atol=1e-12)
-    client.enable(False, publish)
-    client.until(client.output_is('READY'), publish)
-    client.during(0.2, publish)
+    client.until(client.output_is('HOLDING'))  # silence
+    client.during(0.2)
     np.testing.assert_allclose(client.commands[-1][1], expected, rtol=1e-12, atol=1e-12)
+    answer = client.enable(False, publish)
+    assert answer.message == 'releasing the efforts in force'
+    client.until(client.output_is('FAULT'), publish)  # that of the silence
+    client.during(0.2, publish)
+    assert client.commands[-1][1] == [0.0, 0.0, 0.0]
+    enabled(client, publish)
+    client.enable(False, publish)  # a request does not hold
+    client.until(client.output_is('READY'), publish)
+    assert client.commands[-1][1] == [0.0, 0.0, 0.0]
 
 
-def test_a_new_description_is_ignored_while_output_is_on(client, start):
+def test_a_new_description_waits_until_the_output_is_off(client, start):
     process = start()
     client.record_commands()
     text = PENDULUM.read_text()
@@ -247,15 +266,13 @@ def test_a_new_description_is_ignored_while_output_is_on(client, start):
     assert client.commands[-1][1] == [pytest.approx(HOLD)]
     client.enable(False, publish)
     client.until(client.output_is('READY'), publish)
-    client.description.publish(String(data=heavier))
-    client.during(0.3, publish)
     client.commands.clear()
     enabled(client, publish)
     client.during(0.2, publish)
     assert client.commands[-1][1] == [pytest.approx(5 / 3 * HOLD)]
     process.send(signal.SIGINT)
     client.until(lambda: process.process.poll() is not None, publish)
-    assert 'ignored: output is on' in process.wait()[1]
+    assert 'waits until the output is off' in process.wait()[1]
 
 
 def test_enabling_is_refused_with_every_reason(client, start, tmp_path):
@@ -384,3 +401,128 @@ def test_a_flood_of_calls_does_not_take_the_arms_commands(client, start):
     assert len(answers) > 2 * len(published)
     assert set(answers) == {True, False}
     assert len(client.commands) > 0.8 * len(published)
+
+
+def test_two_signals_right_after_each_other_are_one(client, start):
+    # As `ros2 launch` without a terminal sends them: it must not cut the stop short.
+    process = start(robot_description_file=PENDULUM)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    client.commands.clear()
+    process.send(signal.SIGINT)
+    client.during(0.05, publish)
+    process.send(signal.SIGINT)
+    client.until(lambda: process.process.poll() is not None, publish, timeout=6.0)
+    client.during(0.2)
+    efforts = np.array([effort for _, [effort] in client.commands])
+    assert efforts[-1] == 0.0
+    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
+    assert process.wait()[0] == 0
+
+
+def test_a_second_signal_sends_zero_sooner_and_says_what_was_left(client, start):
+    process = start(robot_description_file=PENDULUM, stop_ramp=60.0)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    process.send(signal.SIGTERM)
+    client.during(0.8, publish)
+    process.send(signal.SIGTERM)
+    begin = time.monotonic()
+    client.until(lambda: process.process.poll() is not None, publish, timeout=6.0)
+    assert time.monotonic() - begin < 1.5
+    client.during(0.2)
+    assert client.commands[-1][1] == [0.0]
+    code, output = process.wait()
+    assert code == 0
+    assert 'second signal: the efforts go to zero within 0.3 s; now hinge: ' in output
+
+
+@pytest.mark.parametrize('number', [signal.SIGHUP, signal.SIGQUIT])
+def test_a_terminal_that_closes_stops_the_arm_like_sigterm(client, start, number):
+    process = start(robot_description_file=PENDULUM, stop_ramp=0.3)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    process.send(number)
+    client.until(lambda: process.process.poll() is not None, publish, timeout=6.0)
+    client.during(0.2)
+    assert client.commands[-1][1] == [0.0]
+    assert process.wait()[0] == 0
+
+
+def test_nothing_is_enabled_after_a_signal_however_often_it_is_asked_for(client, start):
+    process = start(robot_description_file=PENDULUM, stop_ramp=0.2)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    service = client.node.create_client(SetBool, '/dynamics_node/enable')
+    client.until(service.service_is_ready, publish)
+
+    def ask(future=None):
+        service.call_async(SetBool.Request(data=True)).add_done_callback(ask)
+    for _ in range(4):  # in flight at any time
+        ask()
+    client.during(0.2, publish)
+    process.send(signal.SIGTERM)
+    client.until(lambda: process.process.poll() is not None, publish, timeout=8.0)
+    client.during(0.2)
+    assert client.commands[-1][1] == [0.0]
+    assert process.wait()[0] == 0
+
+
+def test_a_process_that_stood_still_goes_on_by_a_fault_and_not_by_a_step(client, start):
+    process = start(robot_description_file=PENDULUM)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    client.until(lambda: client.commands[-1][1] == [pytest.approx(HOLD)], publish)
+    process.send(signal.SIGSTOP)
+    # The arm is moved meanwhile: upright nothing holds it.
+    upright = np.pi / 2
+
+    def moved():
+        client.publish(['hinge'], [upright], [0.0])
+    client.during(1.0, moved)
+    client.commands.clear()
+    process.send(signal.SIGCONT)
+    client.until(client.output_is('FAULT'), moved)
+    efforts = np.array([HOLD, *[effort for _, [effort] in client.commands]])
+    assert np.abs(np.diff(efforts)).max() < 0.1 * HOLD
+    assert efforts[-1] == 0.0
+
+
+def test_active_is_said_when_the_full_effort_is_out(client, start):
+    start(robot_description_file=PENDULUM, effort_rate_limits='[8.0]')
+    client.record_commands()
+    publish = level(client)
+    client.until_heard(publish)
+    answer = client.enable(True, publish)
+    assert 'full effort in 0.5 s (start_ramp)' in answer.message
+    assert 'release brakes when ~/state is ACTIVE, not before' in answer.message
+    client.during(0.8, publish)
+    assert client.outputs[-1].name == 'STARTING'
+    client.until(client.output_is('ACTIVE'), publish)
+    # They are two topics: the last command may be heard a moment after the state.
+    client.until(lambda: client.commands[-1][1] == [pytest.approx(HOLD)], publish)
+    count = sum(command == [pytest.approx(HOLD)] for _, command in client.commands)
+    assert count <= 5
+
+
+def test_a_payload_that_comes_while_active_goes_out_over_the_start_ramp(client, start):
+    start(robot_description_file=PENDULUM)
+    client.record_commands()
+    publish = level(client)
+    enabled(client, publish)
+    client.until(lambda: client.commands[-1][1] == [pytest.approx(HOLD)], publish)
+    request = SetParameters.Request(parameters=[Parameter(name='compensate.gravity', value=(
+        ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=False)))])
+    client.commands.clear()
+    [result] = client.call(SetParameters, '/dynamics_node/set_parameters', request,
+                           publish).results
+    assert result.successful
+    client.until(lambda: client.commands[-1][1] == [pytest.approx(0.0)], publish)
+    efforts = np.array([effort for _, [effort] in client.commands])
+    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
+    assert sum(efforts[efforts < 0.95 * HOLD] > 0.05 * HOLD) > 10

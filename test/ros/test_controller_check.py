@@ -1,6 +1,8 @@
-"""What the listeners of the command topic say about their joints, over DDS."""
+"""What the listeners of the command topic say about their joints and lifecycle, over DDS."""
 
-from dynamics_node.ros.controller_check import ControllerCheck
+from dynamics_node.ros.controller_check import Controllers
+from lifecycle_msgs.msg import State, TransitionEvent
+from lifecycle_msgs.srv import GetState
 import pytest
 from rclpy.parameter import Parameter
 from std_msgs.msg import Float64MultiArray
@@ -10,7 +12,7 @@ JOINTS = ('shoulder', 'elbow')
 
 
 @pytest.fixture
-def controllers():
+def listeners():
     """Return a function that starts a listener with parameters."""
     clients = []
 
@@ -18,7 +20,8 @@ def controllers():
         client = Client(name, start_parameter_services=start_parameter_services)
         for key, value in parameters.items():
             client.node.declare_parameter(key, value)
-        client.node.create_subscription(Float64MultiArray, 'efforts', lambda _: None, 1)
+        client.subscription = client.node.create_subscription(
+            Float64MultiArray, 'efforts', lambda _: None, 1)
         clients.append(client)
         return client
     yield start
@@ -26,43 +29,53 @@ def controllers():
         client.close()
 
 
-def asked(client, others, deaf=()):
-    """Ask the listeners in `others`; return refusals and notes. Those in `deaf` do not spin."""
-    check, told = ControllerCheck(client.node, '/efforts'), []
-    names = {other.node.get_name() for other in (*others, *deaf)}
-    client.until(lambda: names <= {
-        info.node_name for info in client.node.get_subscriptions_info_by_topic('/efforts')})
-    check.begin(JOINTS, lambda *answer: told.append(answer))
-
+def spinning(others):
+    """Return an action that lets the others answer."""
     def spin():
         for other in others:
             other.executor.spin_once(timeout_sec=0.0)
-    client.until(lambda: told, spin)
-    assert len(told) == 1
-    assert not check.is_busy
-    return told[0]
+    return spin
 
 
-def test_nobody_there_is_no_reason_to_wait(client):
-    assert asked(client, []) == ([], [])
+def watched(client, others, deaf=()):
+    """Return controllers that have heard of all listeners, and an answer of `others`."""
+    unit = Controllers(client.node, '/efforts')
+    names = {f'/{other.node.get_name()}' for other in (*others, *deaf)}
+    answering = {f'/{other.node.get_name()}' for other in others}
+
+    def heard():
+        unit.update()
+        return names == set(unit.listeners) and all(
+            unit.listeners[name].has_answered for name in answering)
+    client.until(heard, spinning(others))
+    return unit
+
+
+def test_without_a_listener_there_is_nothing_to_wait_for(client):
+    unit = Controllers(client.node, '/efforts')
+    unit.update()
+    assert not unit.is_waiting()
+    assert not unit.has_listener()
+    assert unit.refusals(JOINTS) == unit.notes() == []
 
 
 @pytest.mark.parametrize('parameters', [
     {'joints': list(JOINTS), 'interface_name': 'effort'}, {'joints': list(JOINTS)}, {},
     {'joints': 7}])
 def test_the_same_joints_in_the_same_order_and_listeners_without_joints_pass(
-        client, controllers, parameters):
-    assert asked(client, [controllers('controller', **parameters)]) == ([], [])
+        client, listeners, parameters):
+    unit = watched(client, [listeners('controller', **parameters)])
+    assert unit.refusals(JOINTS) == unit.notes() == []
+    assert not unit.is_waiting()
 
 
 def test_other_joints_another_order_and_another_interface_are_refused_in_words(
-        client, controllers):
-    refusals, notes = asked(client, [
-        controllers('other_order', joints=['elbow', 'shoulder']),
-        controllers('other_joints', joints=['shoulder']),
-        controllers('position_controller', joints=list(JOINTS), interface_name='position')])
-    assert notes == []
-    assert sorted(refusals) == [
+        client, listeners):
+    unit = watched(client, [
+        listeners('other_order', joints=['elbow', 'shoulder']),
+        listeners('other_joints', joints=['shoulder']),
+        listeners('position_controller', joints=list(JOINTS), interface_name='position')])
+    assert sorted(unit.refusals(JOINTS)) == [
         '/other_joints has another number or names of the joints: its parameter joints is '
         '[shoulder], here it is [shoulder, elbow]; make them equal',
         '/other_order has another order of the joints: its parameter joints is [elbow, '
@@ -71,20 +84,89 @@ def test_other_joints_another_order_and_another_interface_are_refused_in_words(
         'an effort controller']
 
 
-def test_whoever_does_not_answer_is_named_and_does_not_hide_the_others(client, controllers):
-    deaf = controllers('a_deaf_one', joints=['elbow', 'shoulder'])
-    plain = controllers('b_plain_one', start_parameter_services=False)
-    other = controllers('z_controller', joints=['elbow', 'shoulder'])
-    refusals, notes = asked(client, [plain, other], [deaf])
-    assert notes == [
-        f'/{name}, which listens there, did not say within 1 s which joints it drives'
-        for name in ('a_deaf_one', 'b_plain_one')]
-    [refusal] = refusals
+def test_a_listener_that_does_not_answer_is_named_and_does_not_hide_the_others(client, listeners):
+    deaf = listeners('a_deaf_one', joints=['elbow', 'shoulder'])
+    plain = listeners('b_plain_one', start_parameter_services=False)
+    other = listeners('z_controller', joints=['elbow', 'shoulder'])
+    unit = watched(client, [other], [deaf, plain])
+    assert unit.is_waiting()
+    assert [note.split(',')[0] for note in sorted(unit.notes())] == ['/a_deaf_one', '/b_plain_one']
+    [refusal] = unit.refusals(JOINTS)
     assert refusal.startswith('/z_controller has another order')
+    # It is asked on: an answer that comes late counts, too.
+    client.until(lambda: (unit.update(), len(unit.refusals(JOINTS)) == 2)[1],
+                 spinning([deaf, other]))
 
 
-def test_it_can_be_asked_again(client, controllers):
-    controller = controllers('controller', joints=['elbow', 'shoulder'])
-    assert asked(client, [controller])[0]
+def test_it_can_be_asked_again(client, listeners):
+    controller = listeners('controller', joints=['elbow', 'shoulder'])
+    unit = watched(client, [controller])
+    assert unit.refusals(JOINTS)
     controller.node.set_parameters([Parameter('joints', value=list(JOINTS))])
-    assert asked(client, [controller]) == ([], [])
+    unit.ask_again()
+    client.until(lambda: (unit.update(), not unit.is_waiting())[1], spinning([controller]))
+    assert unit.refusals(JOINTS) == []
+
+
+def test_a_listener_whose_name_is_not_known_yet_is_waited_for(client, monkeypatch):
+    class Info:
+        node_name, node_namespace = '_NODE_NAME_UNKNOWN_', '_NODE_NAMESPACE_UNKNOWN_'
+
+    class Tool:
+        node_name, node_namespace = '_ros2cli_1234', '/'
+    monkeypatch.setattr(client.node, 'get_subscriptions_info_by_topic', lambda topic: [Info, Tool])
+    unit = Controllers(client.node, '/efforts')
+    unit.update()
+    assert unit.is_waiting()
+    assert unit.has_listener()
+    assert unit.listeners == {}
+    assert unit.notes() == ['a listener there has not been identified yet']
+
+
+def transition(goal):
+    """Return the message that a controller publishes when it goes to a state."""
+    return TransitionEvent(goal_state=State(id=goal))
+
+
+def test_a_controller_that_is_deactivated_is_noticed_by_its_transition_events(client, listeners):
+    controller = listeners('controller', joints=list(JOINTS))
+    publisher = controller.node.create_publisher(TransitionEvent, '~/transition_event', 10)
+    unit = watched(client, [controller])
+    spin = spinning([controller])
+
+    def until(goal, condition):
+        def publish():
+            publisher.publish(transition(goal))
+            spin()
+        client.until(lambda: (unit.update(), condition(unit.refusals(JOINTS)))[1], publish)
+    until(State.PRIMARY_STATE_ACTIVE, lambda refusals: refusals == [])
+    until(State.TRANSITION_STATE_DEACTIVATING, lambda refusals: refusals == [
+        '/controller is being deactivated: the efforts would not reach the arm; activate it '
+        'first, with  ros2 control set_controller_state controller active'])
+    until(State.PRIMARY_STATE_INACTIVE, lambda refusals: 'is inactive' in ''.join(refusals))
+    until(State.PRIMARY_STATE_ACTIVE, lambda refusals: refusals == [])
+
+
+@pytest.mark.parametrize('label, is_refused', [('inactive', True), ('active', False)])
+def test_the_lifecycle_is_asked_for_where_the_listener_tells_it(
+        client, listeners, label, is_refused):
+    controller = listeners('controller', joints=list(JOINTS))
+
+    def answer(request, response):
+        response.current_state.label = label
+        return response
+    controller.node.create_service(GetState, '~/get_state', answer)
+    unit = watched(client, [controller])
+    spin = spinning([controller])
+    unit.ask_again()
+    client.until(lambda: (unit.update(), not unit.is_waiting())[1], spin)
+    client.until(lambda: (unit.ask_again(), unit.update(), client.during(0.1, spin), unit.update(),
+                          bool(unit.refusals(JOINTS)) == is_refused)[-1], spin)
+
+
+def test_a_listener_that_goes_is_forgotten(client, listeners):
+    controller = listeners('controller', joints=['other'])
+    unit = watched(client, [controller])
+    controller.node.destroy_subscription(controller.subscription)
+    client.until(lambda: (unit.update(), not unit.listeners)[1], spinning([controller]))
+    assert unit.refusals(JOINTS) == []

@@ -6,146 +6,294 @@ from types import SimpleNamespace
 
 from dynamics_node import RobotModel
 from dynamics_node.ros.enabling import Enabling
+from dynamics_node.ros.node import _limiter
+from dynamics_node.ros.parameter_table import check_all
 from dynamics_node.ros.robot import Robot
-from dynamics_node.safety import EffortOutput
-from dynamics_node.safety.effort_output import OutputSettings
-import numpy as np
+from dynamics_node.safety import OutputSettings, TorquePath
 import pytest
+from std_srvs.srv import SetBool
 from support.robots import PENDULUM
+
+HEAVY_AT = 0.0  # level: 10.3 N m, at a limit of 20
 
 
 class Output:
-    """A command output that notes what it is told to do."""
+    """A command output without ROS."""
 
     topic = '/efforts'
+    publisher = None
 
     def __init__(self):
-        self.channel = EffortOutput(OutputSettings(0.5, 1.0, 1.0, 'ramp_to_zero'))
-        self.channel.set_limiter(np.ones(1), np.ones(1), np.ones(1))
-        self.begun = []
+        self.path = TorquePath(OutputSettings(60.0, 1.0, 1.0, 'ramp_to_zero'))
+        self.errors = []
+        self.on_internal_error = self.errors.append
 
-    def begin(self, notes):
-        """Enable."""
-        self.begun.append(notes)
-        self.channel.enable(time.monotonic())
-        return 'enabled'
+    def has_listener(self):
+        return True
 
-    def stop(self, reason):
-        """Stop."""
-        self.channel.stop(time.monotonic(), reason)
+    def enable(self):
+        return self.path.enable(time.monotonic())
+
+
+class Controllers:
+    """Controllers that answer when the test says so."""
+
+    def __init__(self):
+        self.asked, self.waits = 0, True
+        self.against, self.to_note, self.listeners = [], [], {}
+
+    def ask_again(self):
+        self.asked += 1
+
+    def update(self):
+        pass
+
+    def is_waiting(self):
+        return self.waits
+
+    def refusals(self, joint_names):
+        return self.against
+
+    def notes(self):
+        return self.to_note
+
+    def has_listener(self):
+        return True
+
+
+class Parts(SimpleNamespace):
+    """An `Enabling` and what it uses."""
+
+    def use(self, model, joints=()):
+        self.robot = Robot(model, joints)
+        self.output.path.use(self.robot.buffer)
+        self.output.path.configure(
+            OutputSettings(60.0, 1.0, 1.0, 'ramp_to_zero'),
+            self.robot.compensation(self.parameters.values),
+            _limiter(self.robot, self.parameters.values), self.robot.motion_limits(()))
+
+    def set(self, **changes):
+        self.parameters.values = check_all({**self.parameters.values, **{
+            name.replace('__', '.'): value for name, value in changes.items()}})
+
+    def fresh(self, position=HEAVY_AT, **message):
+        self.robot.buffer.update(time.monotonic(), list(self.robot.joint_names),
+                                 [position] * len(self.robot.joint_names), **message)
+
+    def begin(self):
+        """Ask for the output; return the task that will have the answer."""
+        task = self.client.executor.create_task(self.enabling.enable)
+        self.client.during(0.1)
+        return task
+
+    def enable(self):
+        """Ask for the output with controllers that answer at once; return the answer."""
+        self.controllers.waits = False
+        task = self.begin()
+        self.client.until(task.done)
+        return task.result()
 
 
 @pytest.fixture
 def parts(client):
-    """Return an `Enabling` whose controllers answer when the test says so, and what it uses."""
-    robot = Robot(RobotModel.from_urdf(PENDULUM), ())
-    parts = SimpleNamespace(robot=robot, output=Output(), rivals=[], asked=[])
-    parameters = {'state_timeout': 60.0, 'effort_limits': ()}
-    parts.enabling = Enabling(client.node, parameters, lambda: parts.robot, parts.output,
-                              SimpleNamespace(found=lambda: parts.rivals))
-    parts.enabling._controllers = SimpleNamespace(
-        is_busy=False, begin=lambda names, done: parts.asked.append((names, done)))
-    parts.fresh = lambda: robot.buffer.update(time.monotonic(), ['hinge'], [0.0])
-    parts.fresh()
+    class Parameters:
+        values = check_all({'state_timeout': 10.0})
+
+        def __getitem__(self, name):
+            return self.values[name]
+    parts = Parts(client=client, output=Output(), controllers=Controllers(), conflicts=[],
+                  descriptions=[], parameters=Parameters())
+    parts.use(RobotModel.from_urdf(PENDULUM))
+    parts.enabling = Enabling(
+        client.node, parts.parameters, lambda: parts.robot, parts.output, SimpleNamespace(
+            conflicts=lambda: parts.conflicts, description_conflicts=lambda: parts.descriptions),
+        parts.controllers, SimpleNamespace(offer_pending=lambda: None))
+    parts.fresh(velocities=[0.0])
     return parts
 
 
-def answers():
-    """Return an empty list and a callable that fills it."""
-    given = []
-    return given, lambda success, text: given.append((success, text))
-
-
 def test_the_output_begins_when_the_controllers_have_nothing_against_it(parts):
-    given, answer = answers()
-    parts.enabling.enable(answer)
-    [(names, done)] = parts.asked
-    assert names == ('hinge',)
-    assert given == parts.output.begun == []
-    done([], ['the deaf one said nothing'])
-    assert given == [(True, 'enabled')]
-    assert parts.output.begun == [['the deaf one said nothing']]
-    parts.enabling.enable(answer)
-    assert given[-1] == (True, 'already enabled: STARTING')
+    task = parts.begin()
+    assert parts.controllers.asked == 1
+    assert not task.done()
+    assert parts.output.path.state.name == 'READY'
+    parts.controllers.waits = False
+    parts.client.until(task.done)
+    success, message = task.result()
+    assert success
+    assert message == ('enabled: full effort in 0.5 s (start_ramp), on /efforts; release brakes '
+                       'when ~/state is ACTIVE, not before')
+    assert parts.output.path.state.name == 'STARTING'
+    assert parts.enable() == (True, 'already enabled: STARTING')
+
+
+def test_an_arm_that_cannot_hold_itself_here_is_refused_with_joint_torque_and_limit(parts):
+    parts.set(effort_limits=[4.0])
+    success, message = parts.enable()
+    assert not success
+    assert ('the arm cannot hold itself where it is, gravity torque is above the effort limit: '
+            'hinge: 10.3005, limit 4') in message
+    parts.set(effort_limits=[4.0], compensate__gravity=False)
+    assert parts.enable()[0]
+
+
+@pytest.mark.parametrize('plugin, is_refused', [
+    ('ur_robot_driver/URPositionHardwareInterface', True),
+    ('mock_components/GenericSystem', False)])
+def test_an_arm_that_compensates_itself_is_refused(parts, plugin, is_refused):
+    parts.use(RobotModel.from_urdf(PENDULUM.read_text().replace(
+        '</robot>', '<ros2_control name="a" type="system"><hardware><plugin>'
+        f'{plugin}</plugin></hardware></ros2_control></robot>')))
+    parts.fresh()
+    success, message = parts.enable()
+    assert success != is_refused
+    if is_refused:
+        assert f'{plugin} (a Universal Robots arm), which compensates gravity itself' in message
+        assert 'allow_self_compensating_arm' in message
+        parts.set(allow_self_compensating_arm=True)
+        assert parts.enable()[0]
+
+
+def test_gravity_that_points_up_needs_a_yes(parts):
+    parts.set(gravity=[0.0, 0.0, 9.81])
+    assert 'points up in the frame of' in parts.enable()[1]
+    parts.set(allow_upward_gravity=True)
+    assert parts.enable()[0]
+
+
+@pytest.mark.parametrize('changes, what', [
+    ({'effort_limits': [200.0]}, 'effort_limits of hinge: 200, in the URDF 20'),
+    ({'velocity_limits': [30.0]}, 'velocity_limits of hinge: 30, in the URDF 20')])
+def test_limits_above_those_of_the_urdf_need_a_yes(parts, changes, what):
+    parts.set(**changes)
+    success, message = parts.enable()
+    assert not success
+    assert f'{what}: lower it, or set allow_limits_above_urdf' in message
+    parts.set(allow_limits_above_urdf=True)
+    assert parts.enable()[0]
 
 
 def test_joints_whose_speed_has_no_limit_are_named(parts):
-    given, answer = answers()
-    parts.robot.joints_without_velocity_limit = lambda: ['hinge']
-    parts.enabling.enable(answer)
-    parts.asked[0][1]([], [])
-    assert given == [(True, 'enabled')]
-    assert parts.output.begun == [['jumps and runaway are not noticed of hinge: the URDF has no '
-                                   'velocity limit there']]
+    parts.use(RobotModel.from_urdf(PENDULUM.read_text().replace('velocity="20"', '')))
+    parts.fresh(velocities=[0.0])
+    assert ('jumps and runaway are not noticed of hinge: the URDF has no velocity limit there; '
+            'set velocity_limits') in parts.enable()[1]
+
+
+def test_missing_velocities_are_named(parts):
+    parts.fresh()
+    assert 'joint_states have no velocity of hinge: a runaway is noticed only' in (
+        parts.enable()[1])
+
+
+def test_joints_that_are_not_chosen_and_were_never_measured_are_named(parts):
+    text = PENDULUM.read_text().replace('</robot>', (
+        '<link name="tool"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" '
+        'iyz="0" izz="1"/></inertial></link><joint name="flap" type="revolute"><parent link='
+        '"rod"/><child link="tool"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="9" '
+        'velocity="9"/></joint></robot>'))
+    if '"rod"' not in PENDULUM.read_text():
+        text = text.replace('"rod"', f'"{RobotModel.from_urdf(PENDULUM).tip_link}"')
+    parts.use(RobotModel.from_urdf(text), ['hinge'])
+    parts.fresh(velocities=[0.0])
+    assert 'taken where last measured, or neutral if never: flap' in parts.enable()[1]
+
+
+def test_an_effort_that_another_process_has_left_is_named(parts):
+    parts.fresh(velocities=[0.0], efforts=[-9.5])
+    assert ('joint_states report efforts that this node has not sent (hinge: -9.5): if a '
+            'controller still holds them') in parts.enable()[1]
+
+
+def test_a_newer_description_that_was_refused_is_named(parts):
+    parts.robot.refused_since = 'it is not XML'
+    assert 'a newer robot description was refused (it is not XML)' in parts.enable()[1]
 
 
 def test_every_reason_against_it_is_said_at_once(parts):
-    given, answer = answers()
-    parts.rivals.append('1 other publisher')
+    parts.conflicts.append('1 other publisher')
+    parts.descriptions.append('2 publishers on /robot_description')
     parts.robot.buffer.forget()
     parts.robot.buffer.rejected['stamp'] = 7
-    parts.enabling.enable(answer)
-    assert given == [(False, 'refused: no joint state within 60 s for hinge (dropped so far: '
-                             '7 for stamp); 1 other publisher')]
-    assert parts.asked == []
+    assert parts.enable() == (False, (
+        'refused: no joint state within 10 s for hinge (dropped so far: 7 for stamp); '
+        '1 other publisher; 2 publishers on /robot_description'))
+    assert parts.controllers.asked == 0
 
 
 def test_a_mass_matrix_that_is_not_positive_definite_is_refused(parts):
-    given, answer = answers()
     parts.robot.is_mass_matrix_positive_definite = lambda: False
-    parts.enabling.enable(answer)
-    assert given[0][1].startswith('refused: the mass matrix is not positive definite')
+    assert parts.enable()[1].startswith('refused: the mass matrix is not positive definite')
 
 
 def test_what_the_controllers_say_is_refused(parts):
-    given, answer = answers()
-    parts.enabling.enable(answer)
-    parts.asked[0][1](['another order'], [])
-    assert given == [(False, 'refused: another order')]
-    assert parts.output.begun == []
+    parts.controllers.against.append('another order')
+    assert parts.enable() == (False, 'refused: another order')
+    assert parts.output.path.state.name == 'READY'
 
 
-def test_what_has_changed_while_they_were_asked_counts(parts):
-    given, answer = answers()
-    parts.enabling.enable(answer)
-    parts.robot = None
-    parts.asked[0][1]([], [])
-    assert given == [(False, 'refused: no robot description yet')]
-
-
-def test_a_robot_with_other_joints_than_the_controllers_were_asked_about_is_refused(parts):
-    given, answer = answers()
-    parts.enabling.enable(answer)
-    description = Path(PENDULUM).read_text()
-    parts.robot = Robot(RobotModel.from_urdf(description.replace('"hinge"', '"pivot"')), ())
-    parts.robot.buffer.update(time.monotonic(), ['pivot'], [0.0])
-    parts.asked[0][1]([], [])
-    assert parts.output.begun == []
-    assert given == [(False, 'refused: the robot description has changed its joints while the '
-                             'controllers were asked: ask again')]
-    parts.enabling.enable(answer)
-    assert parts.asked[1][0] == ('pivot',)
-    parts.asked[1][1]([], [])
-    assert given[-1] == (True, 'enabled')
+def test_a_robot_that_changes_while_they_are_asked_is_refused(parts):
+    task = parts.begin()
+    parts.use(RobotModel.from_urdf(Path(PENDULUM).read_text().replace('"hinge"', '"pivot"')))
+    parts.fresh()
+    parts.controllers.waits = False
+    parts.client.until(task.done)
+    assert task.result() == (False, (
+        'refused: the robot description has changed while the controllers were asked: ask again'))
+    assert parts.enable()[0]
 
 
 def test_several_requests_at_once_get_one_answer_each(parts):
-    given, answer = answers()
-    parts.enabling.enable(answer)
-    parts.enabling._controllers.is_busy = True
-    parts.enabling.enable(answer)
-    assert len(parts.asked) == 1
-    parts.asked[0][1]([], [])
-    assert given == [(True, 'enabled')] * 2
-    assert len(parts.output.begun) == 1
+    tasks = [parts.begin(), parts.begin(), parts.begin()]
+    assert parts.controllers.asked == 1
+    parts.controllers.waits = False
+    parts.client.until(lambda: all(task.done() for task in tasks))
+    answers = [task.result() for task in tasks]
+    assert all(success for success, _ in answers)
+    assert sum(message.startswith('enabled') for _, message in answers) == 1
 
 
 def test_a_request_to_disable_is_the_last_word(parts):
-    given, answer = answers()
-    parts.enabling.enable(answer)
-    parts.enabling.disable(answer)
-    assert given == [(False, 'disabled on request before it was enabled'),
-                     (True, 'already off: READY')]
-    parts.asked[0][1]([], [])
-    assert parts.output.begun == []
-    assert len(given) == 2
+    task = parts.begin()
+    assert parts.enabling.disable() == (True, 'already off: READY')
+    parts.controllers.waits = False
+    parts.client.until(task.done)
+    assert task.result() == (False, 'disabled on request before it was enabled')
+    assert parts.output.path.state.name == 'READY'
+
+
+def test_nothing_is_enabled_when_the_process_is_about_to_end(parts):
+    task = parts.begin()
+    parts.output.path.close(time.monotonic(), 'SIGTERM', 2.5)
+    parts.controllers.waits = False
+    parts.client.until(task.done)
+    assert task.result() == (False, 'refused: the node is shutting down')
+
+
+def test_a_check_of_the_controllers_that_fails_is_an_answer_and_not_a_start(parts):
+    def fail():
+        raise RuntimeError('no graph')
+    parts.controllers.update = fail
+    task = parts.client.executor.create_task(
+        parts.enabling._requested, SetBool.Request(data=True), SetBool.Response())
+    parts.client.until(task.done)
+    assert not task.result().success
+    assert task.result().message == 'internal error: no graph'
+    assert parts.output.errors == ['internal error in ~/enable: no graph']
+    assert parts.output.path.state.name == 'READY'
+
+
+def test_efforts_that_an_inactive_controller_may_hold_cannot_be_released(parts):
+    assert parts.enable()[0]
+    path = parts.output.path
+    path.process_joint_state(time.monotonic(), ['hinge'], [0.0], [0.0], 0, 1)
+    command = path.process_joint_state(time.monotonic() + 0.01, ['hinge'], [0.0], [0.0], 0, 1)
+    path.published(time.monotonic() + 0.01)
+    assert command.any()
+    path.lose_controller(time.monotonic(), '/c is inactive')
+    parts.controllers.listeners['/c'] = SimpleNamespace(inactive=lambda: ['/c is inactive'])
+    success, message = parts.enabling.disable()
+    assert not success
+    assert 'the last efforts may be in force at the hardware (hinge: ' in message
+    parts.controllers.listeners.clear()
+    assert parts.enabling.disable() == (True, 'releasing the efforts in force')

@@ -51,6 +51,15 @@ def test_a_failing_service_answers_that_it_failed():
     assert 'KeyError' in broken.logged[0]
 
 
+def test_an_error_that_keeps_coming_does_not_fill_the_log():
+    broken = Broken()
+    for _ in range(1000):
+        broken.callback('boom')
+    assert len(broken.logged) == 1
+    assert len(broken.told) == 1000  # the torque path hears of every one
+    assert Broken().callback('boom') is None
+
+
 def test_a_callback_that_no_torque_depends_on_is_only_logged():
     broken = Broken()
     assert broken.aside() is None

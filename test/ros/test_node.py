@@ -1,6 +1,7 @@
 """The node over DDS: joint states in, gravity torque and dynamics out."""
 
 import signal
+from types import SimpleNamespace
 
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.msg import JointDynamics
@@ -343,9 +344,7 @@ def test_an_exception_on_the_way_of_the_torque_stops_the_output_and_the_node_liv
     node = DynamicsNode(context=client.context, parameter_overrides=[
         RosParameter(name, value=value) for name, value in (
             ('robot_description_file', str(PENDULUM)), ('state_timeout', 0.5),
-            ('start_ramp', 0.0), ('stop_ramp', 0.1), ('effort_limits', [25.0]))])
-    assert 'effort_limits are above those of the URDF: hinge: 25, in the URDF 20' in (
-        capfd.readouterr().err)
+            ('start_ramp', 0.0), ('stop_ramp', 0.1))])
     client.executor.add_node(node)
     client.record_commands()
 
@@ -360,15 +359,18 @@ def test_an_exception_on_the_way_of_the_torque_stops_the_output_and_the_node_liv
             pytest.approx(0.5 * 3 * 0.7 * 9.81)], publish)
     try:
         active()
-        node._get_robot().gravity_torque = lambda: 1 / 0
+        compensation = node.path.compensation
+        node.path.compensation = SimpleNamespace(torques=lambda q, qd: 1 / 0)
         client.until(client.output_is('FAULT'), publish)
         assert client.outputs[-1].reason == (
             'internal error in _received: division by zero')
         assert client.commands[-1][1] == [0.0]
         assert 'ZeroDivisionError' in capfd.readouterr().err
-        del node._get_robot().gravity_torque
+        node.path.compensation = compensation
         active()
-        node._get_robot().gravity_torque = lambda: np.array([np.nan])
+        bad = np.array([np.nan])
+        node.path.compensation = SimpleNamespace(torques=lambda q, qd: (bad, bad),
+                                                 needs_velocity=False)
         client.until(client.output_is('FAULT'), publish)
         assert client.outputs[-1].reason.startswith('invalid effort: expected finite efforts')
         assert np.isfinite([command for _, command in client.commands]).all()

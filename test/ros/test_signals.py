@@ -28,15 +28,32 @@ def run(name, more=''):
 
 
 def test_the_first_signal_is_noted_and_ends_the_wait():
-    for name in ('INT', 'TERM'):
+    for name in ('INT', 'TERM', 'HUP', 'QUIT'):
         code, out, err, duration = run(name)
         assert (code, out, err) == (0, f'SIG{name}\n', '')
         assert duration < 10.0
 
 
-def test_the_second_signal_ends_the_process():
-    code, out, err, _ = run('INT', 'os.kill(os.getpid(), signal.SIGTERM); time.sleep(60)')
-    assert (code, out, err) == (0, 'SIGINT\n', '')
+SEND = 'os.kill(os.getpid(), signal.SIGTERM); time.sleep({}); '
+
+
+def test_signals_a_few_milliseconds_apart_count_as_one():
+    more = SEND.format(0.01) * 5 + 'print(signals.count)'
+    assert run('INT', more)[:2] == (0, 'SIGINT\n1\n')
+
+
+def test_a_second_signal_is_counted_and_the_third_ends_the_process():
+    more = 'time.sleep(0.6); ' + SEND.format(0.6) + 'print(signals.count); ' + SEND.format(60)
+    code, out, err, _ = run('INT', more)
+    assert (code, out, err) == (1, 'SIGINT\n2\n', '')
+
+
+def test_a_terminal_that_closes_is_ignored_under_nohup():
+    code = ('import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n' + CODE).format(
+        name='TERM', more='print(signal.getsignal(signal.SIGHUP) == signal.SIG_IGN)')
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                          timeout=30.0, check=False)
+    assert done.stdout == 'SIGTERM\nTrue\n'
 
 
 def test_a_wait_that_is_gone_is_no_error():

@@ -139,7 +139,7 @@ def test_a_stamp_far_from_the_clock_makes_nothing_fresh(late, kind):
     stamped(unit, 0.0)
     if kind is None:
         stamped(unit, 1.0, late=late)
-        assert unit.age(1.0) == 0.0
+        assert unit.age(1.0) == pytest.approx(0.09)  # it is as old as its stamp
         return
     with pytest.raises(RejectedStateError, match='synchronise the clocks'):
         stamped(unit, 1.0, late=late)
@@ -305,7 +305,7 @@ def test_wrong_efforts_are_unknown_and_spoil_no_state(efforts):
        st.lists(st.floats(), min_size=4, max_size=4))
 def test_whatever_the_efforts_are_the_state_is_the_same(efforts, names, positions):
     units = [buffer(needed=('a', 'b')), buffer(needed=('a', 'b'))]
-    for unit, given_efforts in zip(units, (None, efforts), strict=True):
+    for unit, given_efforts in zip(units, ((), efforts), strict=True):
         with contextlib.suppress(RejectedStateError):
             unit.update(1.0, names, positions, (), efforts=given_efforts)
         assert not np.isinf(unit.effort).any()

@@ -1,0 +1,116 @@
+"""What stops the output while efforts are sent, and that the search for it is itself watched."""
+
+from types import SimpleNamespace
+
+from dynamics_node.ros.protection import Protection
+import pytest
+
+
+class Path:
+    """A torque path that notes what it is told."""
+
+    def __init__(self):
+        self.is_driving = self.is_on = True
+        self.told, self.checks = [], 0
+
+    def fault(self, now, reason):
+        self.told.append(('fault', reason))
+
+    def lose_controller(self, now, reason):
+        self.told.append(('lost', reason))
+
+    def restart_from_zero(self, now, reason):
+        self.told.append(('restart', reason))
+
+    def monitored(self, now):
+        self.checks += 1
+
+
+def listener(inactive=(), is_controller=True):
+    return SimpleNamespace(inactive=lambda: list(inactive), is_controller=is_controller)
+
+
+@pytest.fixture
+def parts():
+    path = Path()
+    parts = SimpleNamespace(
+        path=path, conflicts=[], refusals=[], next_listeners={'/controller': listener()},
+        errors=[])
+    controllers = SimpleNamespace(
+        listeners=dict(parts.next_listeners), refusals=lambda names: parts.refusals,
+        has_listener=lambda: bool(controllers.listeners))
+    controllers.update = lambda: setattr(controllers, 'listeners', dict(parts.next_listeners))
+    parts.controllers = controllers
+    node = SimpleNamespace(create_timer=lambda *_, **__: None, get_logger=lambda: SimpleNamespace(
+        error=parts.errors.append))
+    parts.unit = Protection(node, SimpleNamespace(path=path),
+                            SimpleNamespace(conflicts=lambda: parts.conflicts), controllers,
+                            lambda: SimpleNamespace(joint_names=('a',)))
+    return parts
+
+
+def test_a_search_that_finds_nothing_is_told_to_the_torque_path(parts):
+    parts.unit._check()
+    assert parts.path.told == []
+    assert parts.path.checks == 1
+
+
+def test_other_publishers_stop_it(parts):
+    parts.conflicts.append('1 other publisher')
+    parts.unit._check()
+    assert parts.path.told == [('fault', '1 other publisher')]
+
+
+def test_a_controller_that_answers_late_and_does_not_fit_stops_it(parts):
+    parts.refusals.append('another order')
+    parts.unit._check()
+    assert parts.path.told == [('fault', 'another order')]
+
+
+def test_a_controller_that_is_deactivated_or_gone_ends_it(parts):
+    parts.next_listeners = {'/controller': listener(['/controller is inactive'])}
+    parts.unit._check()
+    assert parts.path.told == [('lost', '/controller is inactive')]
+    parts.path.told.clear()
+    parts.next_listeners = {'/controller': listener()}
+    parts.unit._check()
+    parts.next_listeners = {}
+    parts.unit._check()
+    assert parts.path.told[0] == ('lost', '/controller no longer listens to the commands')
+
+
+def test_a_listener_that_is_no_controller_may_go(parts):
+    parts.next_listeners = {'/controller': listener(), '/plot': listener(is_controller=False)}
+    parts.unit._check()
+    parts.next_listeners = {'/controller': listener()}
+    parts.unit._check()
+    assert parts.path.told == []
+
+
+def test_the_first_controller_that_begins_to_listen_gets_the_ramp(parts):
+    parts.controllers.listeners = parts.next_listeners = {}
+    parts.unit._check()
+    parts.next_listeners = {'/controller': listener()}
+    parts.unit._check()
+    assert parts.path.told == [('restart', '/controller has begun to listen to the commands')]
+    parts.next_listeners = {'/controller': listener(), '/plot': listener(is_controller=False)}
+    parts.unit._check()
+    assert len(parts.path.told) == 1
+
+
+def test_a_search_that_fails_is_no_search(parts):
+    def fail():
+        raise RuntimeError('no graph')
+    parts.controllers.update = fail
+    for _ in range(10):
+        parts.unit._check()
+    assert parts.path.checks == 0  # the torque path stops when the last one is too long ago
+    assert len(parts.errors) == 1
+
+
+def test_while_it_is_off_only_the_controllers_are_followed(parts):
+    parts.path.is_driving = parts.path.is_on = False
+    parts.conflicts.append('1 other publisher')
+    parts.refusals.append('another order')
+    parts.unit._check()
+    assert parts.path.told == []
