@@ -75,7 +75,7 @@ def _use(model):
     q = robot.buffer.position
     assert np.isfinite(q).all(), f'neutral position {q}'
     try:
-        for name, array in (('G', robot.gravity_torque()), ('D', model.mass_matrix(q)),
+        for name, array in (('G', robot.compensation(check_all({})).torques(robot.buffer.position, robot.buffer.velocity)[0]), ('D', model.mass_matrix(q)),
                             ('C', model.coriolis_matrix(q, np.ones_like(q)))):
             assert np.isfinite(array).all(), f'{name} is not finite: {array}'
         is_usable = robot.is_mass_matrix_positive_definite()

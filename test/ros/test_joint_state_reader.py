@@ -25,14 +25,14 @@ def states(draw, name=names):
     return message
 
 
-def assert_same(read, data, with_effort=False):
+def assert_same(read, data):
     expected = deserialize_message(data, JointState)
     assert list(read.name) == list(expected.name)
     assert read.header == expected.header
     # As bytes: NaN is not equal to itself.
     assert read.position.tobytes() == expected.position.tobytes()
     assert read.velocity.tobytes() == expected.velocity.tobytes()
-    assert read.effort.tobytes() == (expected.effort.tobytes() if with_effort else b'')
+    assert read.effort.tobytes() == expected.effort.tobytes()
 
 
 @given(st.lists(states(), max_size=6))
@@ -51,33 +51,10 @@ def test_states_of_the_same_joints_are_read_as_rclpy_reads_them(sequence):
         assert_same(reader.read(data), data)
 
 
-@given(st.lists(st.tuples(states(name=st.just(['shoulder', 'elbow'])), st.booleans()),
-                min_size=2, max_size=8))
-def test_efforts_are_read_while_they_are_wanted(sequence):
-    reader = JointStateReader()
-    for message, with_effort in sequence:
-        reader.with_effort = with_effort
-        data = serialize_message(message)
-        assert_same(reader.read(data), data, with_effort)
-
-
-@pytest.mark.parametrize('with_effort', [False, True])
-def test_asking_for_the_same_again_does_not_read_the_names_again(monkeypatch, with_effort):
-    reader = JointStateReader()
-    data = serialize_message(JointState(name=['a'], position=[1.0], effort=[2.0]))
-    reader.with_effort = with_effort
-    reader.read(data)
-    monkeypatch.setattr(joint_state_reader, 'deserialize_message', None)
-    reader.with_effort = with_effort
-    assert list(reader.read(data).effort) == [2.0] * with_effort
-
-
-@pytest.mark.parametrize('with_effort', [False, True])
-def test_efforts_that_are_cut_off_spoil_no_state(with_effort):
+def test_efforts_that_are_cut_off_spoil_no_state():
     data = serialize_message(JointState(name=['a'], position=[1.0], effort=[2.0]))
     reader = JointStateReader()
-    reader.with_effort = with_effort
-    reader.read(data)
+    assert list(reader.read(data).effort) == [2.0]
     # The last number is missing, with what rclpy adds behind it.
     read = reader.read(data[:-12])
     assert list(read.position) == [1.0] and len(read.effort) == 0

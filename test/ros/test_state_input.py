@@ -3,10 +3,11 @@
 from types import SimpleNamespace
 
 from dynamics_node import RobotModel
+from dynamics_node.ros.parameter_table import check_all
 from dynamics_node.ros.robot import Robot
 from dynamics_node.ros.state_input import StateInput, WARN_EVERY
-from dynamics_node.safety import EffortOutput, StampTolerance
-from dynamics_node.safety.effort_output import OutputSettings
+from dynamics_node.safety import EffortLimiter, OutputSettings, TorquePath
+import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
 from support.processes import Client
@@ -23,19 +24,22 @@ class Receiver:
         self.client = Client('receiver')
         self.robot = Robot(RobotModel.from_urdf(LIMITED), ())
         # A busy machine may take its time from one process to the other.
-        self.robot.buffer.tolerance = StampTolerance(5.0)
-        self.channel = EffortOutput(OutputSettings(0.5, 0.0, 0.0, 'ramp_to_zero'))
+        settings = OutputSettings(5.0, 0.0, 0.0, 'ramp_to_zero')
+        self.path = TorquePath(settings)
+        self.path.use(self.robot.buffer)
+        self.path.configure(settings, self.robot.compensation(check_all({})), EffortLimiter(
+            np.ones(1), np.ones(1), np.ones(1), ('hinge',)), self.robot.motion_limits(()))
         self.received, self.errors, self.warnings = [], [], []
         node = self.client.node
         node.destroy_publisher(self.client.states)
         self.input = StateInput(node, {'allow_several_state_publishers': False},
-                                lambda: self.robot, self.channel, self, raw)
+                                SimpleNamespace(path=self.path), self, raw)
         self.input.logger = SimpleNamespace(warning=self.warnings.append, info=lambda _: None,
                                             error=self.errors.append)
 
-    def on_state(self, robot, now, stamp):
+    def on_state(self, stamp):
         """Note a usable state."""
-        self.received.append((list(robot.buffer.position), stamp))
+        self.received.append((list(self.robot.buffer.position), stamp))
 
     def on_internal_error(self, message):
         """Note an error of the callback."""
