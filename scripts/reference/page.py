@@ -50,7 +50,7 @@ PROGRAMS = """| command | what it is |
 |---|---|
 | `ros2 run dynamics_node dynamics_node` | the node |
 | `ros2 run dynamics_node report my_arm.urdf` | what the URDF says, and what is wrong with it |
-| `ros2 run dynamics_node effort_guard` | fades the effort when the node dies ([how](effort_guard.md)) |
+| `ros2 run dynamics_node effort_guard` | [fades the effort](effort_guard.md) when the node dies |
 | `ros2 run dynamics_node simulated_robot` | an arm in MuJoCo with brakes, to try the node with |
 | `ros2 run dynamics_node demo` | the demo: `make demo` without make |
 
@@ -62,7 +62,8 @@ the same programs."""
 OPTIONS = """`--executor rclpy` and `--no-raw-states` cost latency and processor time. The leaner
 executor rests on the inside of rclpy 7.1; where that is different it steps back by itself."""
 
-EFFORT_GUARD = """The program `effort_guard` is a process of its own, the node `/effort_guard`. [How to use it](effort_guard.md)."""
+EFFORT_GUARD = """The program `effort_guard` is a process of its own, the node
+`/effort_guard`. [How to use it](effort_guard.md)."""
 
 EFFORT_GUARD_PARAMETERS = """Its parameters, all read-only: they are set at the start. Besides them
 it offers `joints` and `interface_name` as soon as the controller behind it has told its own; they
