@@ -75,7 +75,8 @@ def test_the_effort_guard_stands_between_the_node_and_the_controller():
                           namespace='left', controller_topic='mine/commands')[0]
     assert (guard.node_executable, guard.node_name) == ('effort_guard', '/left/effort_guard')
     assert len(guard._Node__parameters) == 2
-    assert 'effort_guard/commands' in str(node._Node__parameters[-1])
+    [[text]] = node._Node__parameters[-1].values()
+    assert text.text.splitlines()[0] == 'effort_guard/commands'  # it is YAML
 
 
 @pytest.mark.parametrize('path', LAUNCH_FILES, ids=lambda path: path.name)
