@@ -43,6 +43,7 @@ setup(
     entry_points={
         'console_scripts': [
             'dynamics_node = dynamics_node.ros.main:main',
+            'effort_guard = dynamics_node.ros.effort_guard.main:main',
             'simulated_robot = dynamics_node.ros.demo.simulated_robot:main',
             'demo = dynamics_node.ros.demo.demo:main',
             'report = dynamics_node.report.__main__:main',

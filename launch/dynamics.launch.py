@@ -4,6 +4,9 @@ Start dynamics_node with a parameter file.
     ros2 launch dynamics_node dynamics.launch.py params_file:=my_dynamics.yaml namespace:=left
     ros2 launch dynamics_node dynamics.launch.py robot:=my_arm.urdf joint_states:=/arm/states
 
+With `effort_guard:=true` the commands go through the effort guard, which fades them to zero when
+the node dies. Its parameters may stand in the same file, under /**/effort_guard.
+
 """
 
 from pathlib import Path
@@ -11,6 +14,7 @@ from pathlib import Path
 from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
@@ -29,18 +33,38 @@ def generate_launch_description():
                               description='Topic of the joint states'),
         DeclareLaunchArgument('robot_description', default_value='robot_description',
                               description='Topic of the robot description'),
+        DeclareLaunchArgument('effort_guard', default_value='false',
+                              description='Send the commands through the effort guard'),
+        DeclareLaunchArgument('controller_topic',
+                              default_value='forward_effort_controller/commands',
+                              description='Topic of the effort controller; only with '
+                              'effort_guard, instead of the parameter command_topic'),
+        OpaqueFunction(function=start_guard,
+                       condition=IfCondition(LaunchConfiguration('effort_guard'))),
         OpaqueFunction(function=start_node),
     ])
+
+
+def start_guard(context):
+    """Return the effort guard, between the node and the effort controller."""
+    parameters = file_of('params_file', LaunchConfiguration('params_file').perform(context))
+    return [Node(
+        package='dynamics_node', executable='effort_guard', name='effort_guard',
+        namespace=LaunchConfiguration('namespace'),
+        parameters=[parameters, {'output_topic': LaunchConfiguration('controller_topic')}],
+        output='screen')]
 
 
 def start_node(context):
     """Return the node; the argument robot counts more than the parameter file, if it is given."""
     robot = LaunchConfiguration('robot').perform(context)
-    described = [{'robot_description_file': file_of('robot', robot)}] if robot else []
+    more = [{'robot_description_file': file_of('robot', robot)}] if robot else []
+    if IfCondition(LaunchConfiguration('effort_guard')).evaluate(context):
+        more.append({'command_topic': 'effort_guard/commands'})
     parameters = file_of('params_file', LaunchConfiguration('params_file').perform(context))
     return [Node(
         package='dynamics_node', executable='dynamics_node', name='dynamics_node',
-        namespace=LaunchConfiguration('namespace'), parameters=[parameters, *described],
+        namespace=LaunchConfiguration('namespace'), parameters=[parameters, *more],
         remappings=[(topic, LaunchConfiguration(topic))
                     for topic in ('joint_states', 'robot_description')],
         output='screen')]

@@ -6,6 +6,7 @@ import re
 import sys
 
 from dynamics_node.ros.command_line import parser
+from dynamics_node.ros.effort_guard.parameters import GUARD_PARAMETERS
 from dynamics_node.ros.parameter_table import PARAMETERS
 import pytest
 from test_readme import DOCUMENTS, name_of, ROOT
@@ -18,8 +19,10 @@ from reference import graph, launch_files
 SOURCES = [*DOCUMENTS, *sorted((ROOT / 'config').rglob('*.yaml')),
            *sorted((ROOT / 'launch').glob('*.py'))]
 BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
+OF_THE_GUARD = {parameter.name: parameter for parameter in GUARD_PARAMETERS}
 TOPICS = {entry.name.replace('~', '/dynamics_node')
-          for entry in graph.SUBSCRIBED + graph.PUBLISHED}
+          for entry in graph.SUBSCRIBED + graph.PUBLISHED} | {
+    entry.name.replace('~', '/effort_guard') for entry in graph.EFFORT_GUARD}
 # Of other packages, in the versions of Jazzy; their arguments are theirs.
 OTHER_PROGRAMS = {'plotjuggler': {'plotjuggler'},
                   'controller_manager': {'ros2_control_node', 'spawner'},
@@ -46,11 +49,11 @@ MAKE = commands('make')
 MODULES = [(document, words) for document, words in commands('python -m') if words != '...']
 
 
-def check_parameters(words):
+def check_parameters(words, by_name=BY_NAME):
     """Demand that every `-p name:=value` is a parameter of the node, with a fitting value."""
     for name, value in re.findall(r"-p ([\w.]+):=('[^']*'|\S+)", words):
         value = yaml.safe_load(value.strip("'"))
-        BY_NAME[name].check(value)
+        by_name[name].check(value)
 
 
 @pytest.mark.parametrize(('document', 'words'), RUN)
@@ -65,6 +68,8 @@ def test_a_program_that_is_run_exists_with_its_options(document, words):
         _, unknown = parser().parse_known_args(own.split())
         assert not unknown
         check_parameters(of_ros)
+    elif program == 'effort_guard':
+        check_parameters(' '.join(rest), OF_THE_GUARD)
 
 
 @pytest.mark.parametrize(('document', 'words'), LAUNCH)

@@ -70,6 +70,15 @@ def test_a_robot_counts_more_than_the_parameter_file(given, expected):
     assert len(node._Node__parameters) == expected
 
 
+def test_the_effort_guard_stands_between_the_node_and_the_controller():
+    guard, node = started(ROOT / 'launch' / 'dynamics.launch.py', effort_guard='true',
+                          namespace='left', controller_topic='mine/commands')[0]
+    assert (guard.node_executable, guard.node_name) == ('effort_guard', '/left/effort_guard')
+    assert len(guard._Node__parameters) == 2
+    [[text]] = node._Node__parameters[-1].values()
+    assert text.text.splitlines()[0] == 'effort_guard/commands'  # it is YAML
+
+
 @pytest.mark.parametrize('path', LAUNCH_FILES, ids=lambda path: path.name)
 @pytest.mark.parametrize('argument', ['params_file', 'robot'])
 def test_a_file_that_is_not_there_starts_nothing(path, argument):

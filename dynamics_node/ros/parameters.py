@@ -2,27 +2,12 @@
 
 import difflib
 
-from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
-from rclpy.parameter import Parameter as RosParameter
+from rcl_interfaces.msg import SetParametersResult
 
+from .declaring import declare, ros_parameter
 from .guard import logged
-from .parameter_table import (
-    check_all,
-    DOUBLE,
-    DOUBLES,
-    FLAG,
-    ParameterError,
-    PARAMETERS,
-    TEXT,
-    TEXTS,
-)
+from .parameter_table import check_all, ParameterError, PARAMETERS
 from .throttle import Throttle
-
-_TYPES = {
-    DOUBLE: RosParameter.Type.DOUBLE, DOUBLES: RosParameter.Type.DOUBLE_ARRAY,
-    TEXT: RosParameter.Type.STRING, TEXTS: RosParameter.Type.STRING_ARRAY,
-    FLAG: RosParameter.Type.BOOL,
-}
 
 
 class Parameters:
@@ -53,8 +38,7 @@ class Parameters:
         self._node = node
         self.logger = node.get_logger()
         self._logged: dict[str, Throttle] = {}
-        self.values = check_all({name: value for name, value in self._declare().items()
-                                 if value is not None})
+        self.values = check_all(declare(node, PARAMETERS))
         self._warn_of_misspelt()
 
     def watch(self, on_change, further_check):
@@ -94,21 +78,9 @@ class Parameters:
         """
         kinds = {parameter.name: parameter for parameter in PARAMETERS}
         result = self._node.set_parameters_atomically(
-            [_ros_parameter(kinds[name], value) for name, value in values.items()])
+            [ros_parameter(kinds[name], value) for name, value in values.items()])
         if not result.successful:
             raise ParameterError(result.reason)
-
-    def _declare(self):
-        given = {}
-        for parameter in PARAMETERS:
-            name = parameter.name
-            given[name] = self._node.declare_parameter(name, None, _descriptor(parameter)).value
-            if given[name] is None:
-                # Set after declaring: only so an empty list keeps the type of its elements.
-                self._node.set_parameters([_ros_parameter(parameter, parameter.default)])
-            # A read-only parameter could not have been set above.
-            self._node.set_descriptor(name, _descriptor(parameter, parameter.read_only))
-        return given
 
     def _warn_of_misspelt(self):
         # ROS ignores a name that nobody declares; an `effort_limit` would then be no limit.
@@ -144,16 +116,3 @@ class Parameters:
         values.update((item.name, item.value) for item in ros_parameters
                       if item.name in values)
         return check_all(values)
-
-
-def _descriptor(parameter, read_only=False):
-    # Dynamic typing, because rcl refuses [87, 12] for a double array by an exception; the
-    # table's own check takes integers and says what is wrong with the rest.
-    return ParameterDescriptor(description=parameter.description, read_only=read_only,
-                               additional_constraints=parameter.constraints(),
-                               dynamic_typing=True)
-
-
-def _ros_parameter(parameter, value):
-    value = list(value) if isinstance(value, tuple) else value
-    return RosParameter(parameter.name, _TYPES[parameter.kind], value)

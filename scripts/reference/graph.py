@@ -75,5 +75,25 @@ SERVICES = (
     Entry('~/enable', 'std_srvs/srv/SetBool', 'Accepted, or the reasons why not'),
 )
 
+# Of the program effort_guard, in one table: topic or service, type, what passes there.
+EFFORT_GUARD = (
+    Entry('~/commands', 'std_msgs/msg/Float64MultiArray',
+          'Subscribed. Set the `command_topic` of the dynamics node to it; the parameter '
+          '`input_topic` names another one'),
+    Entry('forward_effort_controller/commands', 'std_msgs/msg/Float64MultiArray',
+          'Published. The commands, unchanged and at once, or the fade to zero; the parameter '
+          '`output_topic` names another one'),
+    Entry('~/state', 'dynamics_interfaces/msg/OutputState',
+          'Published on every change, transient local. READY: no effort is in force. ACTIVE: '
+          'commands pass. STOPPING: the last command fades. FAULT: it has faded, or commands do '
+          'not begin near zero. STARTING: the output approaches commands that came again'),
+    Entry('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray',
+          'Published once a second: state, commands passed and refused by kind, fades, silences '
+          'bridged, standstills of the guard itself'),
+    Entry('~/reset', 'std_srvs/srv/Trigger',
+          'Service. Leaves FAULT: the next commands are taken whatever they are, by a ramp from '
+          'zero'),
+)
+
 # Beside these, every node has them.
 OF_EVERY_NODE = ('/rosout', '/parameter_events', '/clock')

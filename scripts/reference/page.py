@@ -4,6 +4,7 @@ from pathlib import Path
 import re
 
 from dynamics_node.ros.command_line import parser
+from dynamics_node.ros.effort_guard.parameters import GUARD_PARAMETERS
 from dynamics_node.ros.parameter_table import PARAMETERS
 
 from . import graph, interfaces, launch_files
@@ -14,7 +15,7 @@ INTERFACES = ROOT / 'dynamics_interfaces'
 
 HEAD = """# Reference
 
-Written by `scripts/write_reference.py` from the parameter table, the interface files and the
+Written by `scripts/write_reference.py` from the parameter tables, the interface files and the
 launch files; do not edit by hand. A test compares it with a running node.
 
 Units are SI. Names are relative or private (`~` is the node, `/dynamics_node` by default), so
@@ -24,7 +25,8 @@ position, or at its neutral one (zero, or the nearest within the limits) while i
 measured.
 
 [Topics](#topics) · [Services](#services) · [Parameters](#parameters) · [Programs and launch
-files](#programs-and-launch-files) · [Messages](#messages) · [Service types](#service-types)"""
+files](#programs-and-launch-files) · [Effort guard](#effort-guard) ·
+[Messages](#messages) · [Service types](#service-types)"""
 
 EXTERNAL_TORQUE = """**External torque.** With `publish_external_torque: true`,
 `~/external_torque` says in N m or N what pushes each joint from outside. joint_states needs
@@ -48,15 +50,24 @@ PROGRAMS = """| command | what it is |
 |---|---|
 | `ros2 run dynamics_node dynamics_node` | the node |
 | `ros2 run dynamics_node report my_arm.urdf` | what the URDF says, and what is wrong with it |
+| `ros2 run dynamics_node effort_guard` | [fades the effort](effort_guard.md) when the node dies |
 | `ros2 run dynamics_node simulated_robot` | an arm in MuJoCo with brakes, to try the node with |
 | `ros2 run dynamics_node demo` | the demo: `make demo` without make |
 
 Where ROS 2 comes from PyPI there is no `ros2` command; `python -m dynamics_node.ros.main`,
-`python -m dynamics_node.report`, `python -m dynamics_node.ros.demo.simulated_robot` and
-`python -m dynamics_node.ros.demo.demo` are the same programs."""
+`python -m dynamics_node.report`, `python -m dynamics_node.ros.effort_guard.main`,
+`python -m dynamics_node.ros.demo.simulated_robot` and `python -m dynamics_node.ros.demo.demo` are
+the same programs."""
 
 OPTIONS = """`--executor rclpy` and `--no-raw-states` cost latency and processor time. The leaner
 executor rests on the inside of rclpy 7.1; where that is different it steps back by itself."""
+
+EFFORT_GUARD = """The program `effort_guard` is a process of its own, the node
+`/effort_guard`. [How to use it](effort_guard.md)."""
+
+EFFORT_GUARD_PARAMETERS = """Its parameters, all read-only: they are set at the start. Besides them
+it offers `joints` and `interface_name` as soon as the controller behind it has told its own; they
+cannot be set."""
 
 
 def render():
@@ -75,10 +86,13 @@ def render():
         '### Published', _entries('topic', 'when', graph.PUBLISHED),
         EXTERNAL_TORQUE,
         '## Services', SERVICES, _entries('service', 'answer', graph.SERVICES),
-        '## Parameters', PARAMETERS_TEXT, _parameters(),
+        '## Parameters', PARAMETERS_TEXT, _parameters(PARAMETERS),
         '## Programs and launch files', PROGRAMS, *_launch_files(),
         'Options of the process, not parameters: `ros2 run dynamics_node dynamics_node --executor '
         'rclpy --no-raw-states`.', _options(), OPTIONS,
+        '## Effort guard', EFFORT_GUARD,
+        _entries('topic or service', 'what passes there', graph.EFFORT_GUARD),
+        EFFORT_GUARD_PARAMETERS, _parameters(GUARD_PARAMETERS),
         '## Messages', *_interfaces('msg', [None]),
         '## Service types', *_interfaces('srv', ['request', 'answer']),
     ]) + '\n'
@@ -120,9 +134,9 @@ def shown(default):
     return "''" if default == '' else str(default)
 
 
-def _parameters():
+def _parameters(parameters):
     rows = []
-    for parameter in PARAMETERS:
+    for parameter in parameters:
         accepts = parameter.constraints()
         notes = [parameter.description, f'Accepts {accepts}' if accepts else '',
                  'Read-only' if parameter.read_only else '']

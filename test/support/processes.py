@@ -23,14 +23,15 @@ PATIENCE = 60.0
 class NodeProcess:
     """The executable `dynamics_node` with given parameters."""
 
-    def __init__(self, *remappings, parameters_file=None, options=(), **parameters):
+    def __init__(self, *remappings, parameters_file=None, options=(),
+                 module='dynamics_node.ros.main', **parameters):
         self.expects_traceback = False
         arguments = [item for name, value in parameters.items()
                      for item in ('-p', f'{name}:={value}')]
         if parameters_file:
             arguments += ['--params-file', str(parameters_file)]
         self.process = subprocess.Popen(
-            [sys.executable, '-m', 'dynamics_node.ros.main', *options, '--ros-args', *arguments,
+            [sys.executable, '-m', module, *options, '--ros-args', *arguments,
              *[item for rule in remappings for item in ('-r', rule)]],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ))
 

@@ -1,0 +1,149 @@
+"""The executable `effort_guard`: start, spin, and leave no effort behind."""
+
+import gc
+import os
+import signal
+import sys
+import time
+import traceback
+
+from .unblocked_output import UnblockedOutput
+
+# Time that the fade may take after a signal, and after a second one, s; launch kills after 5.
+STOP_WITHIN = 2.5
+HURRY_WITHIN = 0.3
+# Then what is left ends at once, s.
+GIVE_UP_AFTER = 3.0
+# launch may send SIGINT twice within milliseconds: that is one, s.
+ONE_SIGNAL = 0.5
+# For the controller to acknowledge the last command, s.
+ACKNOWLEDGE_WITHIN = 0.5
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+
+
+class EndingSignals:
+    """
+    Notes the signals that end the process; nothing is done in the handler.
+
+    Attributes
+    ----------
+    name : str
+        Of the newest signal; '' until one comes.
+    count : int
+        Signals so far; those within ONE_SIGNAL of the one before are one with it.
+
+    """
+
+    def __init__(self, clock=time.monotonic):
+        self.name = ''
+        self.count = 0
+        self._clock = clock
+        self._newest = float('-inf')
+
+    def take_over(self):
+        """Handle the signals from now on."""
+        for number in ENDING:
+            signal.signal(number, self.received)
+
+    def received(self, number, frame):
+        """Take a signal."""
+        now = self._clock()
+        if now - self._newest >= ONE_SIGNAL:
+            self.count += 1
+            self._newest = now
+        self.name = signal.Signals(number).name
+
+
+def main(args=None):
+    """
+    Run the guard until a signal.
+
+    Parameters
+    ----------
+    args : list of str, optional
+        The command line.
+
+    Returns
+    -------
+    int
+        Exit code: 0 after a signal, when no effort is left; 1 if one may be, or if the guard
+        could not start.
+
+    """
+    signals = EndingSignals()
+    signals.take_over()
+    if os.isatty(2):
+        os.environ.setdefault('RCUTILS_COLORIZED_OUTPUT', '1')
+    outputs = [UnblockedOutput(descriptor) for descriptor in (1, 2)]
+    try:
+        return _run(args, signals)
+    finally:
+        for output in outputs:
+            output.close()
+
+
+def _run(args, signals):
+    import rclpy
+    import rclpy.logging
+    from rclpy.signals import SignalHandlerOptions
+    try:
+        # rclpy's own handlers would end the context before the effort is at zero.
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        from .node import EffortGuardNode
+        node = EffortGuardNode()
+    except Exception as error:  # a command line or a parameter that is refused
+        rclpy.logging.get_logger('effort_guard').fatal(str(error))
+        rclpy.try_shutdown()
+        return 1
+    try:
+        return _spin(node, signals)
+    finally:
+        rclpy.try_shutdown()
+
+
+def _spin(node, signals):
+    from rclpy.executors import SingleThreadedExecutor
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    gc.collect()
+    gc.freeze()  # what the start has made stays, and is not looked through again
+    # The guard's own timer ends every wait within 0.05 s; Python runs its signal handlers then.
+    while not signals.count:
+        _spin_once(node, executor)
+    is_left = not _bring_to_rest(node, executor, signals)
+    executor.remove_node(node)
+    node.destroy_node()
+    return int(is_left)
+
+
+def _spin_once(node, executor):
+    try:
+        executor.spin_once()
+    except Exception as error:
+        # Not from our callbacks, which let nothing out, but rclpy has some of its own.
+        node.logger.error(f'error in rclpy: {error}\n{traceback.format_exc()}')
+
+
+def _bring_to_rest(node, executor, signals):
+    # Whether no effort is left.
+    guard = node.guard
+    if not guard.has_effort:
+        return True
+    deadline, count = time.monotonic() + GIVE_UP_AFTER, signals.count
+    node.end(STOP_WITHIN, f'{signals.name}: commands pass no more')
+    while guard.has_effort and time.monotonic() < deadline:
+        _spin_once(node, executor)
+        if signals.count > count:
+            count = signals.count
+            node.end(HURRY_WITHIN, f'{signals.name} again')
+    if guard.has_effort:
+        node.drop()
+    if node.flush(ACKNOWLEDGE_WITHIN):
+        return True
+    node.logger.error('the controller has not acknowledged the last command, zero: an effort may '
+                      'be left')
+    return False
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,525 @@
+"""The effort guard without ROS: what passes, what fades, and what begins."""
+
+from array import array
+from dataclasses import replace
+import itertools
+import math
+
+from dynamics_node.safety.effort_guard import (
+    CONFIRM_AFTER,
+    EffortGuard,
+    FADE_PERIOD,
+    GuardSettings,
+    LONGEST_FADE,
+    LONGEST_STEP,
+    LOOK_EVERY,
+    NEAR,
+    OWN_STALL,
+)
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+
+SETTINGS = GuardSettings(timeout=0.05, stop_ramp=0.5)
+FULL = (40.0, -8.0, 0.5)
+PERIOD = 0.01
+
+
+class Bench:
+    """A guard on a clock that the test turns; everything it returns is recorded."""
+
+    def __init__(self, settings=SETTINGS, obstacle=None, is_found=True):
+        self.states = []
+        self.guard = EffortGuard(settings, lambda state, reason: self.states.append(state.name),
+                                 obstacle)
+        self.now, self.outputs, self._next_look = 100.0, [], 0.0
+        self.look()
+        if is_found:
+            self.guard.source_appeared(self.now)
+            self.wait(0.2)
+
+    @property
+    def state(self):
+        return self.guard.state.name
+
+    @property
+    def last(self):
+        return self.outputs[-1][1] if self.outputs else None
+
+    def look(self):
+        self._record(self.guard.look(self.now))
+        self._next_look = self.now + self.guard.next_look(self.now)
+
+    def send(self, *efforts):
+        """Send one command; return what comes out."""
+        return self._record(self.guard.on_command(self.now, array('d', efforts)))
+
+    def wait(self, seconds):
+        """Let time pass, and the guard look whenever it wants to."""
+        end = self.now + seconds
+        while self._next_look <= end:
+            self.now = max(self.now, self._next_look)
+            self.look()
+        self.now = end
+
+    def stream(self, seconds, efforts=FULL, period=PERIOD):
+        """Send the same command for a time."""
+        for _ in range(round(seconds / period)):
+            self.send(*efforts)
+            self.wait(period)
+
+    def start(self, efforts=FULL, ramp=0.5):
+        """Send what the node sends when it is enabled."""
+        steps = round(ramp / PERIOD)
+        for i in range(1, steps + 1):
+            self.send(*(i / steps * effort for effort in efforts))
+            self.wait(PERIOD)
+        assert self.state == 'ACTIVE'
+
+    def freeze(self, seconds):
+        """Let time pass without the guard running."""
+        self.now += seconds
+
+    def _record(self, output):
+        if output is not None:
+            self.outputs.append((self.now, list(output)))
+        return output
+
+
+@pytest.fixture
+def bench():
+    return Bench()
+
+
+@pytest.fixture
+def active(bench):
+    bench.start()
+    bench.stream(0.2)
+    return bench
+
+
+def is_fading(outputs, start=FULL):
+    """Tell whether outputs go to zero in proportion, none larger than the one before."""
+    factors = [output[0] / start[0] for output in outputs]
+    return factors == sorted(factors, reverse=True) and all(
+        output == pytest.approx([factor * effort for effort in start])
+        for factor, output in zip(factors, outputs, strict=True))
+
+
+# Passing -------------------------------------------------------------------------------------
+
+def test_commands_pass_as_they_are(bench):
+    command = array('d', FULL)
+    assert bench.guard.on_command(bench.now, command) is command
+    assert bench.states == ['ACTIVE']
+
+
+def test_nothing_comes_out_before_a_command_and_after_the_last_zero(bench):
+    bench.wait(1.0)
+    assert bench.outputs == []
+    bench.start()
+    bench.send(0.0, 0.0, 0.0)
+    count = len(bench.outputs)
+    bench.wait(10.0)
+    assert len(bench.outputs) == count
+    assert bench.state == 'READY' and not bench.guard.has_effort
+    assert bench.guard.fades == 0
+
+
+def test_it_can_begin_again_after_an_end_at_zero(active):
+    active.send(0.0, 0.0, 0.0)
+    active.wait(0.3)
+    active.start()
+    assert active.last == list(FULL)
+    assert active.states == ['ACTIVE', 'READY', 'ACTIVE']
+
+
+def test_a_step_of_the_node_is_the_nodes_business(active):
+    assert active.send(-40.0, 8.0, 0.0) is not None
+
+
+def test_an_effort_above_its_limit_is_clamped():
+    bench = Bench(replace(SETTINGS, effort_limits=(30.0, 10.0, 1.0)))
+    bench.start()
+    assert bench.last == [30.0, -8.0, 0.5]
+    assert bench.guard.clamped > 0
+
+
+# Silence -------------------------------------------------------------------------------------
+
+def test_silence_fades_in_time_and_ends_in_fault(active):
+    silent_since = active.now - PERIOD
+    before = len(active.outputs)
+    active.wait(2.0)
+    fade = active.outputs[before:]
+    assert is_fading([output for _, output in fade])
+    assert active.last == [0.0, 0.0, 0.0]
+    begin, end = fade[0][0] - silent_since, fade[-1][0] - silent_since
+    assert SETTINGS.timeout < begin <= SETTINGS.timeout + 2 * CONFIRM_AFTER + FADE_PERIOD + 1e-6
+    assert end <= SETTINGS.timeout + 2 * CONFIRM_AFTER + SETTINGS.stop_ramp + 2 * FADE_PERIOD
+    assert active.state == 'FAULT'
+    assert 'no command for 0.05' in active.guard.reason and '~/reset' in active.guard.reason
+
+
+@pytest.mark.parametrize(('bad', 'kind'), [
+    ((), 'empty'), ((1.0,), 'length'), ((1.0,) * 4, 'length'), ((math.nan, 0.0, 0.0),
+                                                                'not finite'),
+    ((0.0, math.inf, 0.0), 'not finite')])
+def test_what_is_no_command_counts_as_silence(active, bad, kind):
+    before = len(active.outputs)
+    for _ in range(100):
+        assert active.send(*bad) is None
+        active.wait(PERIOD)
+    assert active.state == 'FAULT' and active.last == [0.0, 0.0, 0.0]
+    assert active.guard.refused[kind] == 100
+    assert 'no valid command for 0.05' in active.guard.reason and kind in active.guard.reason
+    assert is_fading([output for _, output in active.outputs[before:]])
+
+
+def test_the_controllers_number_of_joints_counts_before_anything_has_passed(bench):
+    bench.guard.joint_count = 3
+    assert bench.send(1.0, 2.0) is None
+    assert bench.send(1.0, 2.0, 3.0) is not None
+
+
+def test_rate_limits_make_a_fade_longer_but_not_endless():
+    bench = Bench(replace(SETTINGS, rate_limits=(20.0, 100.0, 100.0)))
+    bench.start()
+    bench.wait(1.9)
+    assert bench.guard.has_effort
+    bench.wait(0.3)
+    assert not bench.guard.has_effort
+    steps = [b[0] - a[0] for (_, a), (_, b) in itertools.pairwise(bench.outputs[50:])]
+    assert min(steps) >= -20.0 * LONGEST_STEP
+    slow = Bench(replace(SETTINGS, rate_limits=(1e-9,) * 3))
+    slow.start()
+    slow.wait(LONGEST_FADE + 0.5)
+    assert not slow.guard.has_effort
+
+
+def test_a_short_silence_is_bridged_without_a_step(active):
+    active.wait(0.08)
+    assert active.state == 'STOPPING' and active.guard.has_effort
+    before = active.last
+    assert active.send(*FULL) == pytest.approx(before)
+    active.wait(PERIOD)
+    active.stream(0.2)
+    assert active.state == 'ACTIVE' and active.last == list(FULL)
+    assert active.guard.bridged == 1
+    rate = max(abs(effort) for effort in FULL) / SETTINGS.stop_ramp
+    outputs = [output[0] for _, output in active.outputs]
+    assert max(abs(b - a) for a, b in itertools.pairwise(outputs[60:])) <= rate * LONGEST_STEP
+
+
+def test_commands_that_come_slowly_are_told_of_with_their_period(bench):
+    bench.stream(1.0, period=0.015)
+    assert bench.guard.slow_period() is None
+    bench.stream(1.0, period=0.02)
+    assert bench.guard.slow_period() == pytest.approx(0.02)
+    fast = Bench()
+    fast.send(*FULL)
+    assert fast.guard.slow_period() is None
+
+
+def test_a_command_that_waits_behind_a_late_look_is_in_time(active):
+    active.freeze(SETTINGS.timeout + 0.01)
+    active.look()
+    assert active.send(*FULL) is not None
+    active.wait(PERIOD)
+    assert active.state == 'ACTIVE' and active.guard.fades == 0
+
+
+# After a fade --------------------------------------------------------------------------------
+
+@pytest.fixture
+def faded(active):
+    active.wait(1.0)
+    assert active.state == 'FAULT'
+    return active
+
+
+def test_commands_that_go_on_after_a_fade_do_not_pass(faded):
+    before = len(faded.outputs)
+    faded.stream(1.0)
+    assert len(faded.outputs) == before
+    assert faded.state == 'FAULT'
+    assert 'commands begin with up to 40, too far from zero' in faded.guard.reason
+    assert faded.states.count('FAULT') == 2  # which is not told with every command
+
+
+def test_neither_does_their_way_to_zero_but_the_start_after_it_passes(faded):
+    faded.stream(0.2)
+    before = len(faded.outputs)
+    for i in range(50, -1, -1):
+        faded.send(*(i / 50 * effort for effort in FULL))
+        faded.wait(PERIOD)
+    assert [output for _, output in faded.outputs[before:]] == [[0.0] * 3]
+    faded.wait(0.2)
+    assert faded.state == 'READY' and faded.guard.reason.endswith('armed again')
+    faded.start()
+    assert faded.last == list(FULL)
+
+
+def test_a_new_source_that_begins_near_zero_is_taken(faded):
+    # The node has died without a zero, and another one is enabled.
+    faded.guard.source_appeared(faded.now)
+    faded.wait(1.0)
+    faded.start()
+    assert faded.last == list(FULL)
+
+
+def test_zeros_between_full_commands_arm_nothing(faded):
+    for _ in range(20):
+        faded.send(0.0, 0.0, 0.0)
+        assert faded.send(*FULL) is None
+        faded.wait(PERIOD)
+    assert faded.state == 'FAULT'
+
+
+def test_commands_that_go_on_late_in_a_fade_do_not_pass(active):
+    active.wait(0.05 + 0.25)
+    assert active.state == 'STOPPING'
+    assert active.send(*FULL) is None
+    before = len(active.outputs)
+    active.stream(1.0)
+    assert active.state == 'FAULT' and active.last == [0.0] * 3
+    assert is_fading([output for _, output in active.outputs[before:]])
+    assert active.guard.refused['during a fade'] > 10
+
+
+def test_reset_lets_them_pass_by_a_ramp(faded):
+    faded.stream(0.1)
+    success, message = faded.guard.reset(faded.now)
+    assert success and 'within 0.5 s' in message
+    before = len(faded.outputs)
+    faded.stream(1.0)
+    assert faded.state == 'ACTIVE' and faded.last == list(FULL)
+    outputs = [[0.0] * 3] + [output for _, output in faded.outputs[before:]]
+    steps = [b[0] - a[0] for a, b in itertools.pairwise(outputs)]
+    assert min(steps) >= 0.0
+    assert max(steps) <= FULL[0] * LONGEST_STEP / SETTINGS.stop_ramp + 1e-9
+    assert 'STARTING' in faded.states
+
+
+def test_reset_is_not_kept_for_silence_in_its_ramp(faded):
+    faded.guard.reset(faded.now)
+    faded.send(*FULL)
+    faded.wait(3.0)
+    assert faded.send(*FULL) is None
+    assert faded.state == 'FAULT'
+
+
+def test_reset_without_a_fault_is_refused(active):
+    success, message = active.guard.reset(active.now)
+    assert not success and 'nothing to reset: ACTIVE' in message
+
+
+# The beginning -------------------------------------------------------------------------------
+
+def test_a_guard_that_comes_later_than_the_commands_does_not_begin_with_them():
+    bench = Bench(is_found=False)
+    bench.stream(0.3)
+    assert bench.outputs == [] and bench.state == 'FAULT'
+    assert 'under way' in bench.guard.reason
+    bench.guard.source_appeared(bench.now)
+    bench.stream(0.3)
+    assert bench.outputs == []
+    bench.send(0.0, 0.0, 0.0)
+    bench.wait(0.3)
+    bench.start()
+    assert bench.last == list(FULL)
+
+
+def test_with_effort_limits_a_beginning_far_from_zero_is_refused():
+    bench = Bench(replace(SETTINGS, effort_limits=(87.0, 87.0, 5.0)))
+    assert bench.send(0.11 * 87.0, 0.0, 0.0) is None
+    assert bench.state == 'FAULT'
+    bench.wait(0.3)
+    assert bench.send(0.09 * 87.0, 0.0, 0.0) is not None
+
+
+def test_an_obstacle_keeps_an_effort_from_beginning_but_no_zero():
+    reasons = ['nobody listens']
+    bench = Bench(obstacle=lambda: reasons[0])
+    assert bench.send(0.1, 0.0, 0.0) is None
+    assert bench.state == 'FAULT' and bench.guard.reason.startswith('nobody listens')
+    assert bench.send(0.0, 0.0, 0.0) is not None
+    reasons[0] = ''
+    bench.wait(0.3)
+    assert bench.state == 'READY'
+    bench.start()
+
+
+# Its own end and its own standstill ----------------------------------------------------------
+
+@pytest.mark.parametrize('within', [2.5, 0.2])
+def test_at_its_own_end_it_fades_whatever_comes(active, within):
+    begin = active.now
+    active.guard.end(begin, within, 'SIGTERM')
+    before = len(active.outputs)
+    active.look()
+    active.stream(1.0)
+    fade = active.outputs[before:]
+    assert is_fading([output for _, output in fade])
+    assert not active.guard.has_effort and active.state == 'READY'
+    assert fade[-1][0] - begin <= min(within, SETTINGS.stop_ramp) + 2 * FADE_PERIOD
+
+
+def test_its_own_end_may_be_hurried(active):
+    active.guard.end(active.now, 2.5, 'SIGINT')
+    active.look()
+    active.wait(0.1)
+    active.guard.end(active.now, 0.1, 'SIGINT again')
+    active.wait(0.13)
+    assert not active.guard.has_effort
+    assert active.guard.drop() == [0.0] * 3
+
+
+def test_its_own_end_at_rest_has_nothing_to_do(bench):
+    bench.guard.end(bench.now, 2.5, 'SIGTERM')
+    assert not bench.guard.has_effort
+    assert bench.send(*FULL) is None
+
+
+def test_after_its_own_standstill_it_approaches_the_commands(active):
+    active.freeze(1.0)
+    before = len(active.outputs)
+    other = (20.0, 8.0, 0.0)
+    active.send(*other)
+    assert active.state == 'STARTING' and 'stood still for 1.0' in active.guard.reason
+    active.look()
+    active.stream(1.2, other)
+    assert active.state == 'ACTIVE' and active.last == list(other)
+    outputs = [FULL] + [output for _, output in active.outputs[before:]]
+    for a, b in itertools.pairwise(outputs):
+        for last, new, largest in zip(a, b, FULL):
+            scale = max(abs(largest), NEAR * 40.0)
+            assert abs(new - last) <= scale * LONGEST_STEP / SETTINGS.stop_ramp + 1e-9
+    assert active.guard.stalls == 1
+
+
+def test_after_its_own_standstill_commands_that_are_the_same_pass(active):
+    active.freeze(1.0)
+    active.look()
+    active.send(*FULL)
+    assert active.state == 'ACTIVE' and active.last == list(FULL)
+
+
+def test_a_standstill_in_a_fade_makes_no_step(active):
+    active.wait(0.1)
+    before = active.last
+    active.freeze(1.0)
+    active.look()
+    assert before[0] - active.last[0] <= FULL[0] * LONGEST_STEP / SETTINGS.stop_ramp + 1e-9
+    active.wait(1.0)
+    assert active.last == [0.0] * 3
+
+
+def test_an_observer_that_fails_changes_nothing():
+    def fail(state, reason):
+        raise RuntimeError('observer')
+    guard = EffortGuard(SETTINGS, fail)
+    guard.source_appeared(0.0)
+    assert guard.on_command(1.0, array('d', FULL)) is not None
+    assert guard.state.name == 'ACTIVE'
+
+
+# Whatever comes ------------------------------------------------------------------------------
+
+EFFORT = st.one_of(st.floats(-50.0, 50.0), st.just(0.0))
+COMMAND = st.one_of(
+    st.tuples(EFFORT, EFFORT), st.just((30.0, -5.0)), st.just((0.0, 0.0)), st.just((0.3, 0.0)),
+    st.sampled_from([(), (1.0,), (1.0, 2.0, 3.0), (math.nan, 1.0), (1.0, math.inf)]))
+EVENT = st.one_of(
+    st.tuples(st.just('send'), COMMAND),
+    st.tuples(st.just('stream'), st.tuples(COMMAND, st.integers(1, 30))),
+    st.tuples(st.just('start'), st.tuples(EFFORT, EFFORT)),
+    st.tuples(st.just('wait'), st.floats(0.0, 1.5)),
+    st.tuples(st.just('freeze'), st.floats(0.0, 3.0)),
+    st.tuples(st.just('late'), st.floats(0.0, 0.2)),
+    st.tuples(st.just('reset'), st.none()),
+    st.tuples(st.just('source'), st.none()))
+LIMITS = st.one_of(st.just(()), st.just((40.0, 8.0)))
+RATES = st.one_of(st.just(()), st.just((60.0, 30.0)))
+
+
+class Judge(Bench):
+    """Holds every output against what the guard promises, from what can be seen of it."""
+
+    def __init__(self, settings):
+        self.force, self.scale, self.input = [0.0, 0.0], [0.0, 0.0], None
+        super().__init__(settings)
+        self.guard.joint_count = 2
+
+    def look(self):
+        before = list(self.force)
+        self.input = None
+        super().look()
+        # A look never starts and never enlarges an effort, and its steps are small.
+        ramp = self.guard.settings.stop_ramp
+        for last, new, largest in zip(before, self.force, self.scale, strict=True):
+            assert abs(new) <= abs(last) and new * last >= 0.0
+            assert abs(new - last) <= largest * LONGEST_STEP / ramp + 1e-9
+
+    def send(self, *efforts):
+        before, was = list(self.force), self.guard.state.name
+        output = super().send(*efforts)
+        if output is None:
+            return None
+        assert len(efforts) == 2 and all(map(math.isfinite, efforts))
+        limits = self.guard.settings.effort_limits or (math.inf, math.inf)
+        wanted = [min(max(effort, -limit), limit)
+                  for effort, limit in zip(efforts, limits, strict=True)]
+        if list(output) != list(efforts):
+            # On the way from what is in force to the command, or from the way's beginning.
+            start = self.guard._start if self.guard.state.name == 'STARTING' else before
+            for low, value, high in zip(start, output, wanted, strict=True):
+                assert min(low, high) - 1e-9 <= value <= max(low, high) + 1e-9
+        if was == 'FAULT' and any(output):
+            # After a fade an effort begins near zero, or not at all.
+            most = max(self.scale) or max(limits)
+            assert max(map(abs, output)) <= NEAR * most + 1e-9
+        self.scale = [max(largest, abs(effort))
+                      for largest, effort in zip(self.scale, output, strict=True)]
+        return output
+
+    def _record(self, output):
+        if output is not None:
+            assert all(map(math.isfinite, output))
+            self.force = list(output)
+        return super()._record(output)
+
+
+@given(st.lists(EVENT, max_size=25), LIMITS, RATES)
+def test_whatever_comes_no_effort_starts_by_itself_and_every_silence_ends_at_zero(
+        events, limits, rates):
+    judge = Judge(replace(SETTINGS, effort_limits=limits, rate_limits=rates))
+    for kind, value in events:
+        if kind == 'send':
+            judge.send(*value)
+        elif kind == 'stream':
+            judge.stream(value[1] * PERIOD, value[0])
+        elif kind == 'start':
+            for i in range(1, 51):
+                judge.send(*(i / 50 * effort for effort in value))
+                judge.wait(PERIOD)
+        elif kind == 'wait':
+            judge.wait(value)
+        elif kind == 'freeze':
+            judge.freeze(value)
+        elif kind == 'late':
+            judge.freeze(value)
+            judge.look()
+        elif kind == 'reset':
+            judge.guard.reset(judge.now)
+        else:
+            judge.guard.source_appeared(judge.now)
+    longest = max([SETTINGS.stop_ramp] + [abs(effort) / rate for effort, rate in zip(
+        judge.force, rates)])
+    judge.wait(SETTINGS.timeout + LOOK_EVERY + CONFIRM_AFTER + longest + 3 * FADE_PERIOD)
+    assert judge.force == [0.0, 0.0] and not judge.guard.has_effort
+    assert judge.state in ('READY', 'FAULT')
+
+
+def test_it_notices_its_own_standstill_later_than_it_looks():
+    assert OWN_STALL >= 2 * LOOK_EVERY
