@@ -1,6 +1,7 @@
 """The first door: a robot description, as the node takes it from its topic."""
 
 from dynamics_node import DynamicsError, RobotDescriptionError, RobotModel
+from dynamics_node.ros.parameter_table import check_all
 from dynamics_node.ros.robot import Robot
 import numpy as np
 
@@ -70,12 +71,17 @@ def _judge(sentences):
         assert 0 < len(sentence) <= _LONGEST_PROBLEM, f'{len(sentence)} characters: {sentence:.99}'
 
 
+def _gravity_torque(robot):
+    compensation = robot.compensation(check_all({}))
+    return compensation.torques(robot.buffer.position, robot.buffer.velocity)[0]
+
+
 def _use(model):
     robot = Robot(model, ())
     q = robot.buffer.position
     assert np.isfinite(q).all(), f'neutral position {q}'
     try:
-        for name, array in (('G', robot.compensation(check_all({})).torques(robot.buffer.position, robot.buffer.velocity)[0]), ('D', model.mass_matrix(q)),
+        for name, array in (('G', _gravity_torque(robot)), ('D', model.mass_matrix(q)),
                             ('C', model.coriolis_matrix(q, np.ones_like(q)))):
             assert np.isfinite(array).all(), f'{name} is not finite: {array}'
         is_usable = robot.is_mass_matrix_positive_definite()
