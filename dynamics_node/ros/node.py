@@ -14,7 +14,6 @@ from .enabling import Enabling
 from .external_torque import ExternalTorque
 from .guard import logged
 from .hints import Hints
-from .markers import Markers
 from .model_settings import PER_JOINT
 from .parameter_table import ParameterError
 from .parameters import Parameters
@@ -66,8 +65,6 @@ class DynamicsNode(Node):
         self._external_torque = ExternalTorque(self, self.parameters)
         self.output = CommandOutput(self, self.parameters, self._get_robot,
                                     self._output_changed)
-        self._markers = Markers(self, self.parameters, self.output.channel,
-                                self._ask_for_efforts)
         self.states = StateInput(self, self.parameters, self._get_robot, self.output.channel,
                                  self, raw_states)
         self._rivals = Rivals(self, self.output.topic, self.states,
@@ -123,7 +120,6 @@ class DynamicsNode(Node):
         is_first = self._robot is None
         self._robot = robot
         self._configure(self.parameters.values)
-        self._markers.prepare(robot)
         self._announce(robot, origin)
         if is_first:
             self.output.announce()
@@ -166,10 +162,7 @@ class DynamicsNode(Node):
             self._robot.buffer.tolerance = StampTolerance(values['state_timeout'])
         self.output.configure()
         self._external_torque.configure()
-        self._ask_for_efforts()
-
-    def _ask_for_efforts(self):
-        self.states.with_effort = self._external_torque.is_on or self._markers.is_on
+        self.states.with_effort = self._external_torque.is_on
 
     def on_state(self, robot, now, stamp):
         """Compute what follows from a state that is fit for use, and publish it."""
@@ -189,7 +182,6 @@ class DynamicsNode(Node):
         self._results.publish(robot, stamp, effort)
         if self._external_torque.is_on:
             self._external_torque.on_state(robot, stamp, effort)
-        self._markers.on_state(robot, stamp, effort)
 
     @logged
     def _every_second(self):

@@ -23,6 +23,8 @@ PATIENCE = 60.0
 class NodeProcess:
     """The executable `dynamics_node` with given parameters."""
 
+    module = 'dynamics_node.ros.main'
+
     def __init__(self, *remappings, parameters_file=None, options=(), **parameters):
         self.expects_traceback = False
         arguments = [item for name, value in parameters.items()
@@ -30,7 +32,7 @@ class NodeProcess:
         if parameters_file:
             arguments += ['--params-file', str(parameters_file)]
         self.process = subprocess.Popen(
-            [sys.executable, '-m', 'dynamics_node.ros.main', *options, '--ros-args', *arguments,
+            [sys.executable, '-m', self.module, *options, '--ros-args', *arguments,
              *[item for rule in remappings for item in ('-r', rule)]],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ))
 
@@ -53,6 +55,12 @@ class NodeProcess:
             self.process.kill()
             raise
         assert self.expects_traceback or 'Traceback' not in output, output
+
+
+class MarkersProcess(NodeProcess):
+    """The executable `markers` with given parameters."""
+
+    module = 'dynamics_node.ros.markers'
 
 
 class Client:
