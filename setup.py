@@ -47,6 +47,7 @@ setup(
             'simulated_robot = dynamics_node.ros.demo.simulated_robot:main',
             'demo = dynamics_node.ros.demo.demo:main',
             'report = dynamics_node.report.__main__:main',
+            'markers = dynamics_node.ros.markers.__main__:main',
         ],
     },
 )

@@ -5,8 +5,9 @@ Start a simulated arm and dynamics_node beside it; the arm's brakes are engaged.
     ros2 service call /dynamics_node/enable std_srvs/srv/SetBool '{data: true}'
     ros2 service call /simulated_robot/set_brakes std_srvs/srv/SetBool '{data: false}'
 
-With `rviz:=true` RViz shows masses, gravity and torques. With `namespace:=left` everything is
-below /left: two of them, left and right, are two arms that know nothing of each other.
+With `rviz:=true` RViz shows masses, gravity and torques, which the markers program draws. With
+`namespace:=left` everything is below /left: two of them, left and right, are two arms that know
+nothing of each other.
 
 """
 
@@ -76,7 +77,7 @@ def file_of(argument, path):
 
 
 def show(context):
-    """Return RViz and what it needs; without them the demo runs all the same, and says so."""
+    """Return RViz and the programs that it needs; the demo runs without RViz, too, and says so."""
     missing = [package for package in VIEWERS if not is_installed(package)]
     if missing:
         return [LogInfo(msg=f'rviz:=true: {" and ".join(missing)} not found, going on without; '
@@ -90,6 +91,8 @@ def show(context):
     # Link names are the same in every namespace, so each has its own frames.
     frames = [('/tf', 'tf'), ('/tf_static', 'tf_static')]
     return [
+        Node(package='dynamics_node', executable='markers', name='markers', namespace=namespace,
+             output='screen'),
         # The simulated robot has published the description already.
         Node(package='robot_state_publisher', executable='robot_state_publisher',
              namespace=namespace, parameters=[{'robot_description': text}],

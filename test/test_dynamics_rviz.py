@@ -61,8 +61,9 @@ def test_topics_and_their_quality_of_service(display, key, topic):
     assert settings['Reliability Policy'] == 'Reliable'
     latched = settings['Durability Policy'] == 'Transient Local'
     assert latched == (topic == '/robot_description')
-    code = (ROOT / 'dynamics_node' / 'ros' / 'markers.py').read_text()
-    assert "'~/markers'" in code
+    code = (ROOT / 'dynamics_node' / 'ros' / 'markers' / 'node.py').read_text()
+    assert "declare_parameter('dynamics_node', 'dynamics_node'" in code
+    assert "f'{self._followed.name}/markers'" in code
 
 
 def test_it_begins_with_what_the_demo_shows():

@@ -22,9 +22,11 @@ def read(path):
     return module
 
 
-def started(path, **arguments):
+def started(path, are_viewers_installed=None, **arguments):
     """Return the nodes that a launch file starts with arguments, and what it says."""
     module = read(path)
+    if are_viewers_installed is not None:
+        module.is_installed = lambda package: are_viewers_installed
     from launch import LaunchContext
     from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction
     from launch_ros.actions import Node
@@ -107,6 +109,16 @@ def test_rviz_that_is_not_installed_is_no_reason_to_stop(monkeypatch):
     else:
         assert {node.node_package for node in with_rviz} == {
             'dynamics_node', 'rviz2', 'robot_state_publisher'}
+
+
+def test_rviz_comes_with_the_markers_program_in_the_same_namespace():
+    path = ROOT / 'launch' / 'demo.launch.py'
+    nodes, said = started(path, are_viewers_installed=True, rviz='true', namespace='left')
+    assert not said
+    names = [node.node_name for node in nodes if node.node_executable == 'markers']
+    assert names == ['/left/markers']
+    nodes, _ = started(path, are_viewers_installed=False, rviz='true')
+    assert 'markers' not in {node.node_executable for node in nodes}
 
 
 @pytest.mark.parametrize('robot', [ARM7, PENDULUM], ids=lambda path: path.stem)

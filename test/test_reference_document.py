@@ -10,6 +10,7 @@ from rcl_interfaces.msg import ParameterType
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.parameter import parameter_value_to_python
 from support.processes import Client, NodeProcess
+from support.sros2_policy import read
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / 'scripts'))
@@ -125,6 +126,18 @@ def test_every_program_that_is_installed_is_on_it():
     installed = re.findall(r"'(\w+) = dynamics_node", (ROOT / 'setup.py').read_text())
     assert {plain(cells[0]).split()[3] for cells in rows('Programs and launch files')} == set(
         installed)
+
+
+def test_the_markers_program_uses_these_topics():
+    # Its policy is held against the graph of the running program.
+    allowed = set().union(*read(
+        ROOT.joinpath('config', 'sros2_policy_markers.xml').read_text()).allowed.values())
+    named = {plain(name) for name, *_ in rows('Markers program')}
+    used = {f'/{name}' if name[0] != '/' else name
+            for name in (name.replace('<node>', 'dynamics_node') for name in named)}
+    assert used == {name for name in allowed if not name.startswith('/markers/')} - {
+        '/rosout', '/clock'}
+    assert named == {entry.name for entry in graph.MARKERS}
 
 
 def test_the_service_table_is_that_of_the_interfaces():

@@ -2,7 +2,7 @@
 Drawing: what the dynamics of a robot look like, as plain shapes. No ROS, no window.
 
 What may change here: shapes, sizes and colours. Where things are comes from the model, and
-who shows them (`ros/markers.py` sends them to RViz) only translates.
+`ros/markers/`, which sends them to RViz, only translates.
 
 """
 

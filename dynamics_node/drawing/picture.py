@@ -1,6 +1,6 @@
 """`Picture`: all that there is to see of a robot's dynamics at one state."""
 
-from itertools import chain, islice
+from itertools import chain
 
 import numpy as np
 
@@ -11,8 +11,6 @@ from .torques import Torques
 from ..inertia import transform_pseudo_inertia
 
 GRAVITY, PAYLOAD = 'gravity', 'payload'
-# Shapes in a piece: whoever has other things to do in between waits no longer than for these.
-PIECE = 20
 # m/s²: an arrow of gravity has its full length then.
 _EARTH = 9.81
 
@@ -46,9 +44,9 @@ class Picture:
         self._payload = None
         self._payload_body = self._body_of(None)
 
-    def parts(self, model, q, gravity_torque, effort, limits):
+    def shapes(self, model, q, gravity_torque, effort, limits):
         """
-        Draw one state piece by piece, for whoever has other things to do in between.
+        Draw one state.
 
         Parameters
         ----------
@@ -56,33 +54,27 @@ class Picture:
             Of the same tree, with its payload and gravity.
         q : numpy.ndarray, shape (n,)
             Joint positions, rad or m.
-        gravity_torque : numpy.ndarray, shape (m,)
-            G of the joints, N m or N, finite.
+        gravity_torque : numpy.ndarray, shape (m,), or None
+            G of the joints, N m or N, finite. None draws neither torques nor efforts.
         effort : numpy.ndarray, shape (m,)
             Another effort of the joints, N m or N; NaN where there is none.
         limits : numpy.ndarray, shape (m,)
             Largest effort of the joints, N m or N; NaN where there is none.
 
-        Yields
-        ------
+        Returns
+        -------
         list of Shape
-            In the base frame, at most PIECE: masses and gravity, then efforts. Nothing where the
-            robot is at no finite place.
+            In the base frame: masses and gravity, then torques. Empty where the pose of a body
+            is not finite.
 
         """
         poses = model.body_poses(q)
         if not np.isfinite(poses).all():
-            return
-        shapes = chain(
-            self._bodies.shapes(poses), self._carried(model.payload).shapes(poses),
-            self._gravity(model.gravity.tolist()),
-            self._torques.shapes(poses, gravity_torque, effort, limits))
-        while piece := list(islice(shapes, PIECE)):
-            yield piece
-
-    def shapes(self, *arguments):
-        """Draw one state at once: all that `parts` yields, a list of Shape."""
-        return [shape for part in self.parts(*arguments) for shape in part]
+            return []
+        torques = () if gravity_torque is None else self._torques.shapes(
+            poses, gravity_torque, effort, limits)
+        return list(chain(self._bodies.shapes(poses), self._carried(model.payload).shapes(poses),
+                          self._gravity(model.gravity.tolist()), torques))
 
     def _carried(self, payload):
         if payload is not self._payload:

@@ -36,9 +36,6 @@ PUBLISHED = (
           'For every usable joint state with velocity and effort, while '
           '`publish_external_torque` is true: name, position, velocity, effort = what pushes the '
           'joints from outside'),
-    Entry('~/markers', 'visualization_msgs/msg/MarkerArray',
-          'At most 20 times a second, while somebody listens: masses, inertia, gravity and '
-          'torques as a picture ([RViz](rviz.md))'),
     Entry('forward_effort_controller/commands', 'std_msgs/msg/Float64MultiArray',
           'Only while the output is enabled, in the order of `joints`. The parameter '
           '`command_topic` names another one'),
@@ -93,6 +90,23 @@ EFFORT_GUARD = (
     Entry('~/reset', 'std_srvs/srv/Trigger',
           'Service. Leaves FAULT: the next commands are taken whatever they are, by a ramp from '
           'zero'),
+)
+
+# Of the markers program; <node> is its parameter `dynamics_node`.
+MARKERS = (
+    Entry('<node>/markers', 'visualization_msgs/msg/MarkerArray',
+          'Published at most 20 times a second, while it has a subscriber: masses, inertia, '
+          'gravity and torques ([RViz](rviz.md)). Frame: the root link'),
+    Entry('robot_description', 'std_msgs/msg/String',
+          'Subscribed. Used unless the parameters of the dynamics node give a description'),
+    Entry('joint_states', 'sensor_msgs/msg/JointState',
+          'Subscribed while there is a subscriber to the markers: position and effort'),
+    Entry('<node>/gravity_torque', 'sensor_msgs/msg/JointState',
+          'Subscribed while there is a subscriber to the markers'),
+    Entry('/parameter_events', 'rcl_interfaces/msg/ParameterEvent',
+          'Subscribed: payload, gravity and limits that change'),
+    Entry('<node>/get_parameters', 'rcl_interfaces/srv/GetParameters',
+          'Called once after the dynamics node has started'),
 )
 
 # Beside these, every node has them.

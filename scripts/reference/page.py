@@ -49,18 +49,25 @@ of every ROS 2 node: `use_sim_time` (on both sides, if a simulation publishes `/
 PROGRAMS = """| command | what it is |
 |---|---|
 | `ros2 run dynamics_node dynamics_node` | the node |
+| `ros2 run dynamics_node markers` | what RViz shows of the node: [markers](#markers-program) |
 | `ros2 run dynamics_node report my_arm.urdf` | what the URDF says, and what is wrong with it |
 | `ros2 run dynamics_node effort_guard` | [fades the effort](effort_guard.md) when the node dies |
 | `ros2 run dynamics_node simulated_robot` | an arm in MuJoCo with brakes, to try the node with |
 | `ros2 run dynamics_node demo` | the demo: `make demo` without make |
 
 Where ROS 2 comes from PyPI there is no `ros2` command; `python -m dynamics_node.ros.main`,
-`python -m dynamics_node.report`, `python -m dynamics_node.ros.effort_guard.main`,
-`python -m dynamics_node.ros.demo.simulated_robot` and `python -m dynamics_node.ros.demo.demo` are
-the same programs."""
+`python -m dynamics_node.ros.markers`, `python -m dynamics_node.report`,
+`python -m dynamics_node.ros.effort_guard.main`, `python -m dynamics_node.ros.demo.simulated_robot`
+and `python -m dynamics_node.ros.demo.demo` are the same programs."""
 
-OPTIONS = """`--executor rclpy` and `--no-raw-states` cost latency and processor time. The leaner
-executor rests on the inside of rclpy 7.1; where that is different it steps back by itself."""
+MARKERS = """`ros2 run dynamics_node markers` draws for one dynamics node, in a process of its own.
+Its one parameter, `dynamics_node`, is the name of that node (default `dynamics_node`), relative to
+the namespace of the program; read-only. It is `<node>` in the table."""
+
+OPTIONS = """`--executor events` is refused with the reason where its self-test at start fails: with
+rclpy before 7.1.11 it runs no callback that answers late, and where the C++ library was built
+without a steady condition variable it waits with a busy core. `--no-raw-states` costs latency and
+processor time."""
 
 EFFORT_GUARD = """The program `effort_guard` is a process of its own, the node
 `/effort_guard`. [How to use it](effort_guard.md)."""
@@ -88,11 +95,12 @@ def render():
         '## Services', SERVICES, _entries('service', 'answer', graph.SERVICES),
         '## Parameters', PARAMETERS_TEXT, _parameters(PARAMETERS),
         '## Programs and launch files', PROGRAMS, *_launch_files(),
-        'Options of the process, not parameters: `ros2 run dynamics_node dynamics_node --executor '
-        'rclpy --no-raw-states`.', _options(), OPTIONS,
+        'Options of the process, not parameters: `ros2 run dynamics_node dynamics_node '
+        '--no-raw-states`.', _options(), OPTIONS,
         '## Effort guard', EFFORT_GUARD,
         _entries('topic or service', 'what passes there', graph.EFFORT_GUARD),
         EFFORT_GUARD_PARAMETERS, _parameters(GUARD_PARAMETERS),
+        '### Markers program', MARKERS, _entries('name', 'notes', graph.MARKERS),
         '## Messages', *_interfaces('msg', [None]),
         '## Service types', *_interfaces('srv', ['request', 'answer']),
     ]) + '\n'

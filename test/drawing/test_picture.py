@@ -1,8 +1,7 @@
-"""The whole picture: never a number that RViz refuses, gravity, and pieces that add up."""
+"""The whole picture: never a number that RViz refuses, gravity, payload, torques or none."""
 
 from dynamics_node import RobotModel
 from dynamics_node.drawing import ARROW, Picture
-from dynamics_node.drawing.picture import PIECE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -91,14 +90,14 @@ def test_without_gravity_there_is_no_arrow():
     assert shapes and 'gravity' not in {shape.group for shape in shapes}
 
 
-def test_the_parts_are_the_whole():
+def test_without_a_torque_neither_torques_nor_efforts_are_drawn():
     robot = RobotModel.from_urdf(ARM7)
     picture = Picture(robot.tree, robot.joint_names)
-    arguments = (robot, robot.neutral_position, np.ones(8), np.ones(8), robot.effort_limits)
-    parts = list(picture.parts(*arguments))
-    assert len(parts) > 2
-    assert {len(part) for part in parts[:-1]} == {PIECE} and 0 < len(parts[-1]) <= PIECE
-    assert [shape for part in parts for shape in part] == picture.shapes(*arguments)
+    whole, without = (picture.shapes(robot, robot.neutral_position, torque, np.ones(8),
+                                     robot.effort_limits) for torque in (np.ones(8), None))
+    assert without == whole[:len(without)]
+    assert {shape.group for shape in whole[len(without):]} == {
+        'joints', 'gravity_torque', 'effort', 'torque_text'}
 
 
 def arrow_of(gravity):

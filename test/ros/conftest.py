@@ -18,9 +18,23 @@ def client():
 def start():
     """Return a function that starts the node with parameters."""
     from support.processes import NodeProcess
+    with _starting(NodeProcess) as start:
+        yield start
+
+
+@pytest.fixture
+def start_markers():
+    """Return a function that starts the markers program with parameters."""
+    from support.processes import MarkersProcess
+    with _starting(MarkersProcess) as start:
+        yield start
+
+
+@contextlib.contextmanager
+def _starting(kind):
     with contextlib.ExitStack() as stack:  # which ends all, also when the end of one goes wrong
         def start(*remappings, **parameters):
-            process = NodeProcess(*remappings, **parameters)
+            process = kind(*remappings, **parameters)
             stack.callback(process.close)
             return process
 

@@ -1,4 +1,4 @@
-"""config/sros2_policy.xml allows the node what it does, and nothing else."""
+"""The policies in config allow the node and the markers program what they do, nothing else."""
 
 from pathlib import Path
 import re
@@ -11,21 +11,23 @@ from rclpy.node import NodeNameNonExistentError
 from std_msgs.msg import Float64MultiArray, String
 from support.robots import PENDULUM
 from support.sros2_policy import POLICY, PolicyError, read
+from visualization_msgs.msg import MarkerArray
 
 DOCUMENT = Path(__file__).parents[2] / 'docs' / 'security.md'
+MARKERS_POLICY = POLICY.with_name('sros2_policy_markers.xml')
 # Only when the node is to be enabled, and only where a controller listens.
 ASKED = '/forward_effort_controller/get_parameters'
 
 
-def graph(client, namespace='/'):
-    """Return what the node does, as seen from another one: permission → full names."""
+def graph(client, namespace='/', name='dynamics_node'):
+    """Return what a node does, as seen from another one: permission → full names."""
     node = client.node
     questions = {'publish': node.get_publisher_names_and_types_by_node,
                  'subscribe': node.get_subscriber_names_and_types_by_node,
                  'reply': node.get_service_names_and_types_by_node,
                  'request': node.get_client_names_and_types_by_node}
     try:
-        return {permission: {name for name, _ in question('dynamics_node', namespace)}
+        return {permission: {used for used, _ in question(name, namespace)}
                 for permission, question in questions.items()}
     except NodeNameNonExistentError:
         return {permission: set() for permission in questions}
@@ -40,15 +42,15 @@ def difference(names, others):
             for permission, found in names.items() if found - others.get(permission, set())}
 
 
-def check(client, allowed, *optional, namespace='/'):
-    """Demand that the node does all that is allowed, once everything is there, and no more."""
+def check(client, allowed, *optional, **node):
+    """Demand that a node does all that is allowed, once everything is there, and no more."""
     wanted = without(allowed, *optional)
     try:
-        client.until(lambda: not difference(wanted, graph(client, namespace)))
+        client.until(lambda: not difference(wanted, graph(client, **node)))
     except AssertionError:
-        unused = difference(wanted, graph(client, namespace))
+        unused = difference(wanted, graph(client, **node))
         raise AssertionError(f'allowed, but not used: {unused}') from None
-    assert difference(graph(client, namespace), allowed) == {}
+    assert difference(graph(client, **node), allowed) == {}
 
 
 def test_the_node_does_what_it_is_allowed_and_no_more(client, start):
@@ -83,6 +85,22 @@ def test_a_node_at_work_does_no_more(client, start):
     assert not any(forbidden), max(forbidden, key=len)
     check(client, allowed, ASKED, '/clock')
     controller.destroy_node()
+
+
+@pytest.mark.parametrize('namespace', ['/', '/left'])
+def test_the_markers_program_does_what_it_is_allowed_and_no_more(
+        client, start_markers, namespace):
+    start_markers(f'__ns:={namespace}', use_sim_time='true')
+    client.listen(MarkerArray, f'{namespace.rstrip("/")}/dynamics_node/markers')
+    allowed = read(MARKERS_POLICY.read_text(), namespace=namespace).allowed
+    check(client, allowed, name='markers', namespace=namespace)
+
+
+def test_the_document_links_the_policy_of_the_markers_program():
+    profile = read(MARKERS_POLICY.read_text())
+    assert (profile.enclave, profile.node) == ('/markers', 'markers')
+    text = DOCUMENT.read_text()
+    assert '(../config/sros2_policy_markers.xml), for an enclave `/markers`' in text
 
 
 def test_it_is_that_of_the_default_parameters():

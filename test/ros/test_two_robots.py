@@ -99,7 +99,6 @@ def test_states_of_one_never_reach_the_other(client, arms):
     for arm in arms:
         for topic in ('joint_states', 'forward_effort_controller/commands', 'robot_description'):
             assert client.node.count_publishers(f'/{arm.side}/{topic}') == 1
-        assert client.node.count_subscribers(f'/{arm.side}/dynamics_node/markers') == 0
     # What hears each topic is in the same namespace.
     for arm, other in ((left, right), (right, left)):
         ends = (client.node.get_subscriptions_info_by_topic(f'/{arm.side}/joint_states')

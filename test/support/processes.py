@@ -23,15 +23,16 @@ PATIENCE = 60.0
 class NodeProcess:
     """The executable `dynamics_node` with given parameters."""
 
-    def __init__(self, *remappings, parameters_file=None, options=(),
-                 module='dynamics_node.ros.main', **parameters):
+    module = 'dynamics_node.ros.main'
+
+    def __init__(self, *remappings, parameters_file=None, options=(), module=None, **parameters):
         self.expects_traceback = False
         arguments = [item for name, value in parameters.items()
                      for item in ('-p', f'{name}:={value}')]
         if parameters_file:
             arguments += ['--params-file', str(parameters_file)]
         self.process = subprocess.Popen(
-            [sys.executable, '-m', module, *options, '--ros-args', *arguments,
+            [sys.executable, '-m', module or self.module, *options, '--ros-args', *arguments,
              *[item for rule in remappings for item in ('-r', rule)]],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ))
 
@@ -54,6 +55,12 @@ class NodeProcess:
             self.process.kill()
             raise
         assert self.expects_traceback or 'Traceback' not in output, output
+
+
+class MarkersProcess(NodeProcess):
+    """The executable `markers` with given parameters."""
+
+    module = 'dynamics_node.ros.markers'
 
 
 class Client:

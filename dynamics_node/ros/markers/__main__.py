@@ -1,0 +1,79 @@
+"""The executable `markers`: start, spin, and end with exit code 0 on SIGINT or SIGTERM."""
+
+import signal
+import sys
+
+
+class StopRequest:
+    """
+    Notes the first SIGINT or SIGTERM; the second one ends the process at once.
+
+    Attributes
+    ----------
+    came : bool
+        Whether one of them has come.
+
+    """
+
+    def __init__(self):
+        """Replace Python's handlers, whose KeyboardInterrupt can come at any line."""
+        self.came = False
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._on_signal)
+
+    def ignore(self):
+        """Ignore both signals from now on: the process is about to end."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)
+
+    def _on_signal(self, number, frame):
+        if self.came:
+            sys.exit(0)
+        self.came = True
+
+
+def main(args=None):
+    """
+    Publish markers until SIGINT or SIGTERM.
+
+    Parameters
+    ----------
+    args : list of str, optional
+        The command line.
+
+    Returns
+    -------
+    int
+        Exit code: 0 after a signal, 1 if the node could not start.
+
+    """
+    # Before the imports, which take seconds: Ctrl-C may come during them.
+    stop = StopRequest()
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+    import rclpy.logging
+    from rclpy.signals import SignalHandlerOptions
+
+    from .node import MarkersNode
+    try:
+        # rclpy's own handlers would end the context inside a wait, which raises.
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        node = MarkersNode()
+    except Exception as error:  # a command line or a parameter that is refused
+        rclpy.logging.get_logger('markers').fatal(str(error))
+        rclpy.try_shutdown()
+        return 1
+    try:
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        while not stop.came:
+            # Without a timeout: the node's timer ends every wait, and a signal is seen then.
+            node.spin_once(executor)
+    finally:
+        stop.ignore()
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
