@@ -64,10 +64,9 @@ MARKERS = """`ros2 run dynamics_node markers` draws for one dynamics node, in a 
 Its one parameter, `dynamics_node`, is the name of that node (default `dynamics_node`), relative to
 the namespace of the program; read-only. It is `<node>` in the table."""
 
-OPTIONS = """`--executor events` is refused with the reason where its self-test at start fails: with
-rclpy before 7.1.11 it runs no callback that answers late, and where the C++ library was built
-without a steady condition variable it waits with a busy core. `--no-raw-states` costs latency and
-processor time."""
+OPTIONS = """`--executor events` is refused, with the reason, where its self-test at start fails:
+before rclpy 7.1.11 it runs no callback that answers late, and some builds of it wait with a busy
+core. `--no-raw-states` costs latency and processor time."""
 
 EFFORT_GUARD = """The program `effort_guard` is a process of its own, the node
 `/effort_guard`. [How to use it](effort_guard.md)."""
