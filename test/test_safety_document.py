@@ -3,8 +3,14 @@
 from pathlib import Path
 import re
 
-from dynamics_node.ros import controller_check, main, node
-from dynamics_node.safety import channel, joint_state_buffer, motion_limits, stamps
+from dynamics_node.ros import controller_check, main, protection, signals
+from dynamics_node.safety import (
+    effort_output,
+    joint_state_buffer,
+    motion_limits,
+    stamps,
+    torque_path,
+)
 import pytest
 
 TESTS = Path(__file__).parent
@@ -44,17 +50,23 @@ def test_all_tests_that_are_named_exist(text):
 def test_the_numbers_are_those_of_the_code(text):
     said = [(words, float(value)) for words, value, _ in NUMBER.findall(text)]
     expected = [
-        ('impossible jump', motion_limits.VELOCITY_MARGIN),
-        ('runaway', motion_limits.VELOCITY_MARGIN),
+        ('impossible jump', motion_limits.JUMP_MARGIN),
         ('impossible jumps in a row', joint_state_buffer.MAX_JUMPS),
         ('shortest time between two states', motion_limits.SHORTEST_STEP),
         ('a stamp may differ', stamps.SMALLEST_TOLERANCE),
-        ('longest time above', channel.LONGEST_SATURATION),
-        ('times the clock may go back', channel.MAX_RESTARTS),
+        ('longest time above', effort_output.LONGEST_SATURATION),
+        ('longest ramp of a stop after a fault', effort_output.MAX_FAULT_RAMP),
+        ('longest stop without a ramp', effort_output.ZERO_WITHIN),
+        ('a step counts at most', effort_output.MAX_PERIODS),
+        ('times the clock may go back', torque_path.MAX_RESTARTS),
         ('most joint names', joint_state_buffer.MAX_NAMES),
-        ('other publishers', node.RIVALS_EVERY),
+        ('other publishers', protection.CHECK_EVERY),
+        ('longest time without that search', torque_path.MAX_MONITOR_AGE),
         ('time a controller has', controller_check.ANSWER_WITHIN),
-        ('longest stop', main.GIVE_UP_AFTER)]
+        ('signals closer together', signals.SAME_SIGNAL),
+        ('longest stop after a signal', main.GIVE_UP_AFTER),
+        ('zero after a second signal', main.HURRY_WITHIN),
+        ('an executor that raises', main.FAILING_FOR)]
     assert [value for _, value in said] == [value for _, value in expected]
     for (words, _), (beginning, _) in zip(said, expected, strict=True):
         assert words.startswith(beginning)

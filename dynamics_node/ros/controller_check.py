@@ -56,14 +56,28 @@ class Controllers:
         self.has_unnamed = False
 
     def update(self):
-        """Look who listens, ask newcomers, and read what has been answered."""
-        names = self._names()
-        for name in set(self.listeners) - names:
-            self.listeners.pop(name).close()
-        for name in names - set(self.listeners):
-            self.listeners[name] = Listener(self._node, name)
-        for listener in self.listeners.values():
+        """
+        Look who listens, ask newcomers, and read what has been answered.
+
+        Returns
+        -------
+        list of str
+            Names of the controllers that no longer listen. One that has been replaced by another
+            of the same name is among them.
+
+        """
+        found = self._found()
+        gone = [name for name, item in self.listeners.items()
+                if item.endpoints.isdisjoint(found.get(name, ()))]
+        closed = [self.listeners.pop(name) for name in gone]
+        for listener in closed:
+            listener.close()
+        for name, endpoints in found.items():
+            listener = self.listeners.get(name) or Listener(self._node, name)
+            listener.endpoints = endpoints
+            self.listeners[name] = listener
             listener.update()
+        return sorted(item.name for item in closed if item.is_controller)
 
     def ask_again(self):
         """Forget what the listeners have answered: their parameters may have changed."""
@@ -104,13 +118,18 @@ class Controllers:
         """Whether there is a listener that may be a controller."""
         return bool(self.listeners) or self.has_unnamed
 
-    def _names(self):
+    def _found(self):
+        # Name → endpoints of each listener.
         own = self._node.get_fully_qualified_name()
         infos = self._node.get_subscriptions_info_by_topic(self._topic)
         self.has_unnamed = any(info.node_name in ('', UNKNOWN_NAME) for info in infos)
-        # Other hidden names belong to command line tools, which have no parameters.
-        return {f'{info.node_namespace.rstrip("/")}/{info.node_name}' for info in infos
-                if info.node_name and not info.node_name.startswith('_')} - {own}
+        found: dict[str, set] = {}
+        for info in infos:
+            name = f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+            # Other hidden names belong to command line tools, which have no parameters.
+            if info.node_name and not info.node_name.startswith('_') and name != own:
+                found.setdefault(name, set()).add(tuple(info.endpoint_gid))
+        return found
 
 
 class Listener:
@@ -121,11 +140,14 @@ class Listener:
     ----------
     name : str
         Fully qualified.
+    endpoints : set of tuple
+        Identifiers of its subscriptions.
 
     """
 
     def __init__(self, node, name):
         self.name = name
+        self.endpoints: set = set()
         self._node = node
         self._clients: dict = {}
         self._answers: dict = {}

@@ -73,15 +73,12 @@ class Protection:
         self._path.monitored(time.monotonic())
 
     def _follow_controllers(self, now):
-        before = {name for name, item in self._controllers.listeners.items()
-                  if item.is_controller}
-        self._controllers.update()
+        lost = self._controllers.update()
         if not self._path.is_on:
             return
         inactive = [reason for item in self._controllers.listeners.values()
                     for reason in item.inactive()]
-        gone = [f'{name} no longer listens to the commands'
-                for name in sorted(before - set(self._controllers.listeners))]
+        gone = [f'{name} no longer listens to the commands' for name in lost]
         if inactive or gone:
             self._path.lose_controller(now, '; '.join(inactive + gone))
             return

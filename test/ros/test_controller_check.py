@@ -111,9 +111,10 @@ def test_it_can_be_asked_again(client, listeners):
 def test_a_listener_whose_name_is_not_known_yet_is_waited_for(client, monkeypatch):
     class Info:
         node_name, node_namespace = '_NODE_NAME_UNKNOWN_', '_NODE_NAMESPACE_UNKNOWN_'
+        endpoint_gid = (1,)
 
     class Tool:
-        node_name, node_namespace = '_ros2cli_1234', '/'
+        node_name, node_namespace, endpoint_gid = '_ros2cli_1234', '/', (2,)
     monkeypatch.setattr(client.node, 'get_subscriptions_info_by_topic', lambda topic: [Info, Tool])
     unit = Controllers(client.node, '/efforts')
     unit.update()
@@ -168,5 +169,19 @@ def test_a_listener_that_goes_is_forgotten(client, listeners):
     controller = listeners('controller', joints=['other'])
     unit = watched(client, [controller])
     controller.node.destroy_subscription(controller.subscription)
-    client.until(lambda: (unit.update(), not unit.listeners)[1], spinning([controller]))
+    client.until(lambda: unit.update() == ['/controller'], spinning([controller]))
+    assert unit.listeners == {}
     assert unit.refusals(JOINTS) == []
+
+
+def test_another_controller_of_the_same_name_is_asked_anew(client, listeners):
+    controller = listeners('controller', joints=list(JOINTS))
+    unit = watched(client, [controller])
+    controller.node.destroy_subscription(controller.subscription)
+    controller.node.set_parameters([Parameter('joints', value=['elbow', 'shoulder'])])
+    controller.subscription = controller.node.create_subscription(
+        Float64MultiArray, 'efforts', lambda _: None, 1)
+    gone = []
+    client.until(lambda: (gone.extend(unit.update()), unit.refusals(JOINTS))[1],
+                 spinning([controller]))
+    assert gone == ['/controller']

@@ -39,7 +39,13 @@ def parts():
     controllers = SimpleNamespace(
         listeners=dict(parts.next_listeners), refusals=lambda names: parts.refusals,
         has_listener=lambda: bool(controllers.listeners))
-    controllers.update = lambda: setattr(controllers, 'listeners', dict(parts.next_listeners))
+
+    def update():
+        gone = [name for name, item in controllers.listeners.items()
+                if item.is_controller and name not in parts.next_listeners]
+        controllers.listeners = dict(parts.next_listeners)
+        return gone
+    controllers.update = update
     parts.controllers = controllers
     node = SimpleNamespace(create_timer=lambda *_, **__: None, get_logger=lambda: SimpleNamespace(
         error=parts.errors.append))
