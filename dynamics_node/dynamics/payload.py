@@ -84,7 +84,12 @@ def make_payload(links, link, mass, com, inertia):
     if not np.isfinite(mass):
         raise ArgumentError(f'payload mass: expected a finite number, kg, got {mass}')
     payload = Payload(link, mass, com, inertia)
-    check_physical(payload.pseudo_inertia)
+    with np.errstate(over='ignore', invalid='ignore'):  # said in words instead
+        matrix = payload.pseudo_inertia
+    if not np.isfinite(matrix).all():
+        raise ArgumentError(f'payload com: expected one so near that second moments are finite, '
+                            f'got {com.tolist()}')
+    check_physical(matrix)
     return payload
 
 

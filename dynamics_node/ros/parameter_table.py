@@ -194,7 +194,7 @@ PARAMETERS = (
     Parameter('payload.mass', DOUBLE, 0.0, 'Mass of the payload, kg; 0: there is none', low=0.0,
               high=1e5),
     Parameter('payload.com', DOUBLES, (0.0, 0.0, 0.0), 'Centre of mass of the payload in the '
-              'frame of its link, m', length=3),
+              'frame of its link, m', length=3, low=-1000.0, high=1000.0),
     Parameter('payload.inertia', DOUBLES, (0.0,) * 6, 'Inertia tensor of the payload about its '
               'centre of mass along the axes of its link, kg m²: ixx, ixy, ixz, iyy, iyz, izz',
               length=6),

@@ -7,6 +7,10 @@ from ..dynamics import JointSelection
 from ..errors import DynamicsError
 from ..safety import JointStateBuffer, MotionLimits
 
+# Joints that a message lists as beyond their position limits.
+_MOST_SHOWN = 8
+_ROUNDING = 1e-9
+
 
 class StateUnavailableError(DynamicsError):
     """The newest measured state was asked for, and there is none that is fresh."""
@@ -139,14 +143,43 @@ class Robot:
                 'joint_states, or give positions in the request')
         return self.buffer.position
 
+    def beyond_limits(self, index, positions):
+        """
+        Return which positions in a request are beyond the position limits.
+
+        Parameters
+        ----------
+        index : numpy.ndarray of int, shape (m,)
+            Places of the joints in the request.
+        positions : numpy.ndarray, shape (m,) or (N, m)
+            Of one state or of N, rad or m.
+
+        Returns
+        -------
+        str
+            To append to a message: of each such joint the position furthest beyond, at most
+            eight joints; '' if there is none.
+
+        """
+        lower, upper = self.model.position_limits[index].T
+        # A position that was computed to be at the limit may differ by rounding.
+        slack = _ROUNDING * np.maximum(1.0, np.abs(positions))
+        excess = np.atleast_2d(np.maximum(lower - positions, positions - upper) - slack)
+        furthest = np.atleast_2d(positions)[excess.argmax(axis=0), np.arange(len(index))]
+        beyond = np.flatnonzero(excess.max(axis=0) > 0.0)
+        shown = [f'{self.model.joint_names[index[i]]} at {furthest[i]:.6g} (limits {lower[i]:g} '
+                 f'to {upper[i]:g})' for i in beyond[:_MOST_SHOWN]]
+        more = f' and {len(beyond) - len(shown)} more' if len(beyond) > len(shown) else ''
+        return f'; beyond the position limits: {", ".join(shown)}{more}' if shown else ''
+
     def unseen_others(self, index, now, timeout):
         """
-        Say which of the joints that somebody did not speak of are not where they are seen to be.
+        Return which of the joints that are not in a request are not measured either.
 
         Parameters
         ----------
         index : numpy.ndarray of int
-            Places of the joints that were spoken of.
+            Places of the joints in the request.
         now : float
             Steady clock, s.
         timeout : float

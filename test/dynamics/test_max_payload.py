@@ -312,7 +312,7 @@ def test_rotors_take_their_share_of_an_acceleration(lift):
 
 
 @pytest.mark.parametrize(('arguments', 'options', 'text'), [
-    (([0.0], 'hook'), {}, "link: expected one of world, hub, rod; got 'hook'"),
+    (([0.0], 'hook'), {}, "'hook' is not a link of the robot; expected one of world, hub, rod"),
     (([0.0], 'rod', (0.0, 0.0)), {}, r'point: expected three finite numbers in the frame'),
     (([0.0], 'rod', (0.0, NAN, 0.0)), {}, r'point: expected .* got \[0.0, nan, 0.0\]'),
     (([0.0, 1.0], 'rod'), {}, r'q: expected shape \(..., 1\)'),
