@@ -197,7 +197,7 @@ class DynamicsNode(Node):
         if self._wants_enable and not self._enabling.was_asked:
             self._enabling.enable(self._enabled_on_start)
         self._hints.give()
-        self.states.count_publishers()
+        self.states.adapt_queue()
         self._diagnostics.measure()
         self._diagnostics.publish()
 

@@ -160,7 +160,8 @@ PARAMETERS = (
     Parameter('state_timeout', DOUBLE, 0.1, 'Largest age of a joint state, s, on the steady '
               'clock', low=0.0, low_open=True, high=10.0),
     Parameter('allow_several_state_publishers', FLAG, False, 'Enable although joint_states has '
-              'several publishers: where arm and gripper have a broadcaster each', read_only=True),
+              'several publishers: where arm and gripper have a broadcaster each. No state of one '
+              'then takes the place of one of the other in the queue', read_only=True),
     Parameter('start_ramp', DOUBLE, 0.5, 'Time from zero to the full effort, s', low=0.0,
               high=60.0),
     Parameter('stop_ramp', DOUBLE, 1.0, 'Time from the last effort to zero, s', low=0.0,

@@ -31,6 +31,8 @@ class Robot:
     has_all_in_order : bool
         Whether the chosen joints are those of the model in its order, so that nothing has to
         be picked out.
+    state_publishers : int
+        How many nodes publish its joint states; 0 while that is not known.
 
     """
 
@@ -58,6 +60,7 @@ class Robot:
                          model.is_continuous))
         self._asked: tuple | None = None
         self._answer = model
+        self.state_publishers = 0
         self.has_all_in_order = self.selection.names == tuple(model.joint_names)
 
     def configure(self, values, before=None):
@@ -138,9 +141,12 @@ class Robot:
         """
         stale = self.buffer.stale_joints(now, timeout)
         if stale:
+            shared = (f'; {self.state_publishers} nodes publish joint_states: if an arm and its '
+                      'gripper have a broadcaster each, set allow_several_state_publishers at '
+                      'the start' if self.state_publishers > 1 else '')
             raise StateUnavailableError(
                 f'no joint state within {timeout:g} s for {", ".join(stale)}: publish '
-                'joint_states, or give positions in the request')
+                f'joint_states, or give positions in the request{shared}')
         return self.buffer.position
 
     def beyond_limits(self, index, positions):

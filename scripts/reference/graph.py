@@ -21,7 +21,7 @@ class Entry:
 SUBSCRIBED = (
     Entry('joint_states', 'sensor_msgs/msg/JointState',
           'By name: any order, parts, other joints besides, no velocity: all fine. Best effort, '
-          'the newest wins'),
+          'the newest wins. With several publishers, none loses its state to another one'),
     Entry('robot_description', 'std_msgs/msg/String',
           'As robot_state_publisher publishes it, transient local; not where a parameter '
           'gives it'),
