@@ -87,8 +87,9 @@ def make_payload(links, link, mass, com, inertia):
     with np.errstate(over='ignore', invalid='ignore'):  # said in words instead
         matrix = payload.pseudo_inertia
     if not np.isfinite(matrix).all():
-        raise ArgumentError(f'payload com: expected one so near that second moments are finite, '
-                            f'got {com.tolist()}')
+        raise ArgumentError('payload: expected second moments that are finite, got them of mass '
+                            f'{mass:g}, com {com.tolist()} and an inertia tensor of up to '
+                            f'{np.abs(inertia).max():g}')
     check_physical(matrix)
     return payload
 

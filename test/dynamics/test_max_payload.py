@@ -330,3 +330,9 @@ def test_wrong_input_is_answered_with_what_was_expected_and_what_came(pendulum, 
 def test_where_nothing_has_weight_any_mass_will_do(pendulum, gravity):
     result = pendulum.with_gravity((0.0, 0.0, -gravity)).max_payload([0.3], 'rod')
     assert (result.mass, result.joint) == (INF, -1)
+
+
+def test_a_point_beyond_all_numbers_has_no_answer_and_no_warning(arm):
+    # Warnings are errors here.
+    result = arm.max_payload(np.zeros(8), 'hand', (1e160, 0.0, 0.0))
+    assert np.isnan(result.mass) and result.joint == -1
