@@ -1,6 +1,12 @@
 """The exceptions of this package: one tree, each carrying its data; how they show a text."""
 
+import difflib
+
 _SHOWN = 60
+# Comparing takes long for names that no robot has.
+_LONGEST_COMPARED, _MOST_COMPARED = 100, 1000
+# How like a name must be to be proposed, of 1.
+_LIKENESS = 0.7
 
 
 class DynamicsError(Exception):
@@ -65,3 +71,26 @@ def quoted(text):
     """
     text = str(text)
     return repr(text if len(text) <= _SHOWN else text[:_SHOWN - 3] + '...')
+
+
+def suggestion(name, names):
+    """
+    Return which name was probably meant, to append to the sentence that refuses another one.
+
+    Parameters
+    ----------
+    name : str
+        The unknown name.
+    names : collection of str
+        The known ones.
+
+    Returns
+    -------
+    str
+        ", is 'elbow' meant?"; '' if none is similar.
+
+    """
+    if len(name) > _LONGEST_COMPARED or len(names) > _MOST_COMPARED:
+        return ''
+    similar = difflib.get_close_matches(name, names, n=1, cutoff=_LIKENESS)
+    return f', is {quoted(similar[0])} meant?' if similar else ''

@@ -72,7 +72,7 @@ def file_of(argument, path):
     file = Path(path).expanduser().resolve()
     # launch_ros only warns, and the node would start with the URDF's full effort limits.
     if not file.is_file():
-        raise FileNotFoundError(f'{argument}: expected a file, got {str(file)!r}, which is none')
+        raise FileNotFoundError(f'{argument}: no such file: {str(file)!r}')
     return str(file)
 
 

@@ -28,10 +28,10 @@ OTHER_PROGRAMS = {'plotjuggler': {'plotjuggler'},
                   'controller_manager': {'ros2_control_node', 'spawner'},
                   'robot_state_publisher': {'robot_state_publisher'},
                   'mass_matrix_client': {'mass_matrix_client'}}
-VERBS = {'service call', 'pkg prefix', 'topic echo', 'topic info', 'param get', 'param set',
-         'interface show', 'run', 'launch', 'control switch_controllers',
-         'control load_controller', 'control list_controllers', 'security create_keystore',
-         'security create_enclave', 'security create_permission'}
+VERBS = {'bag play', 'bag record', 'service call', 'pkg prefix', 'topic echo', 'topic info',
+         'param get', 'param set', 'interface show', 'run', 'launch',
+         'control switch_controllers', 'control load_controller', 'control list_controllers',
+         'security create_keystore', 'security create_enclave', 'security create_permission'}
 
 
 def commands(beginning):
@@ -53,7 +53,10 @@ def check_parameters(words, by_name=BY_NAME):
     """Demand that every `-p name:=value` is a parameter of the node, with a fitting value."""
     for name, value in re.findall(r"-p ([\w.]+):=('[^']*'|\S+)", words):
         value = yaml.safe_load(value.strip("'"))
-        by_name[name].check(value)
+        if name == 'use_sim_time':  # of every node
+            assert value is True
+        else:
+            by_name[name].check(value)
 
 
 @pytest.mark.parametrize(('document', 'words'), RUN)
@@ -120,6 +123,12 @@ def test_every_script_that_is_named_exists():
     for path in SOURCES:
         for script in re.findall(r'\bscripts/[\w/]+\.(?:py|sh)', path.read_text()):
             assert (ROOT / script).exists(), f'{name_of(path)}: {script}'
+
+
+@pytest.mark.parametrize(('document', 'words'), commands('ros2 bag'))
+def test_a_topic_of_a_recording_exists(document, words):
+    topics = {word for word in words.split() if word.startswith('/')}
+    assert topics and topics <= TOPICS | {'/joint_states', '/robot_description', '/tf_static'}
 
 
 def test_no_other_verb_of_ros2_is_used():

@@ -85,7 +85,7 @@ def test_the_effort_guard_stands_between_the_node_and_the_controller():
 @pytest.mark.parametrize('argument', ['params_file', 'robot'])
 def test_a_file_that_is_not_there_starts_nothing(path, argument):
     # The node would start with defaults: the URDF's full effort limits, say.
-    expected = f"{argument}: expected a file, got '/.*nope.yaml'"
+    expected = f"{argument}: no such file: '/.*nope.yaml'"
     with pytest.raises(FileNotFoundError, match=expected):
         started(path, **{argument: 'nope.yaml'})
 

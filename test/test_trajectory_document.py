@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 import subprocess
 import sys
+from types import ModuleType, SimpleNamespace
 
 from dynamics_node import RobotModel
 import numpy as np
@@ -21,7 +22,10 @@ NAMES = list(ARM.joint_names[:7])
 USE = f"""
 import json
 rclpy.init()
+from rclpy.executors import SingleThreadedExecutor
 node = rclpy.create_node('mover')
+executor = SingleThreadedExecutor()
+executor.add_node(node)
 # A busy machine takes longer to start the node than a user waits for one that runs.
 node.create_client(ComputeTrajectoryEffort,
                    'dynamics_node/compute_trajectory_effort').wait_for_service(60.0)
@@ -30,9 +34,9 @@ for options in ({{}}, {{'without_gravity': True}}):
     motion = swing({NAMES}, [0.0] * 7, {GOAL})
     answers.append([[list(field) for field in (point.positions, point.velocities,
                                                point.accelerations, point.effort)]
-                    for point in with_effort(node, motion, **options).points])
+                    for point in with_effort(node, executor, motion, **options).points])
 try:
-    with_effort(node, swing({NAMES}, [0.0] * 7, {GOAL}, seconds=0.05))
+    with_effort(node, executor, swing({NAMES}, [0.0] * 7, {GOAL}, seconds=0.05))
 except RuntimeError as error:
     answers.append(str(error))
 print(json.dumps(answers))
@@ -84,6 +88,62 @@ def test_the_code_for_the_library_runs(monkeypatch):
     assert names['efforts'].shape == (61, 8)
     assert names['points'].tolist() == names['joints'].tolist() == []
     assert 0.0 < names['payload'][0] < 100.0
+
+
+class Done:
+    """A future, done from the start or never."""
+
+    def __init__(self, result=None, is_done=True):
+        self.result, self.done = lambda: result, lambda: is_done
+
+
+class Controller:
+    """A controller that takes every goal, and is never done with it if it is told so."""
+
+    def __init__(self, is_done):
+        self.is_done, self.cancelled, self.accepted, self.goal = is_done, 0, True, None
+
+    def wait_for_server(self, timeout_sec):
+        return True
+
+    def send_goal_async(self, goal):
+        self.goal = goal
+        return Done(self)
+
+    def get_result_async(self):
+        return Done(SimpleNamespace(result=SimpleNamespace(error_code=0)), self.is_done)
+
+    def cancel_goal_async(self):
+        self.cancelled += 1
+        return Done()
+
+    def destroy(self):
+        self.goal = self.goal or None
+
+
+def test_a_goal_that_is_not_done_in_time_is_cancelled(monkeypatch):
+    clock = [0.0]
+    executor = SimpleNamespace(spin_once=lambda timeout_sec: clock.__setitem__(0, clock[0] + 0.1))
+    action = SimpleNamespace(Goal=SimpleNamespace, Result=SimpleNamespace(SUCCESSFUL=0))
+    # control_msgs is not everywhere where the tests run.
+    monkeypatch.setitem(sys.modules, 'control_msgs', ModuleType('control_msgs'))
+    monkeypatch.setitem(sys.modules, 'control_msgs.action',
+                        SimpleNamespace(FollowJointTrajectory=action))
+    names: dict = {}
+    exec(compile(ASK + SEND, 'docs/trajectory.md', 'exec'), names)
+    names['monotonic'] = lambda: clock[0]
+    for is_done in (True, False):
+        controller = Controller(is_done)
+        names['ActionClient'] = lambda *_, controller=controller: controller
+        follow, motion = names['follow'], names['swing'](NAMES, [0.0] * 7, GOAL, seconds=3.5)
+        if is_done:
+            follow(None, executor, motion)
+        else:
+            with pytest.raises(RuntimeError, match='not done 3 s after the end: cancelled'):
+                follow(None, executor, motion)
+        assert controller.cancelled == (not is_done)
+        assert controller.goal.goal_time_tolerance.sec == 2
+    assert clock[0] == pytest.approx(6.5, abs=0.2)
 
 
 def test_the_code_for_the_controller_is_python():

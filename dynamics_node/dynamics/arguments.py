@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from ..errors import ArgumentError, quoted
+from ..errors import ArgumentError, quoted, suggestion
 
 # Links that an error message lists.
 _MOST_SHOWN = 50
 
 
-def check_link(links, link):
+def check_link(links, link, field='link'):
     """
     Demand that a link is one of the robot's.
 
@@ -16,16 +16,19 @@ def check_link(links, link):
     ----------
     links : dict of str to LinkFrame
     link : str
+    field : str
+        What the caller gave the name in.
 
     Raises
     ------
     ArgumentError
-        With the links that there are.
+        With the link that was probably meant, or the links that there are.
 
     """
     if link not in links:
         shown = ', '.join(list(links)[:_MOST_SHOWN]) + (', ...' * (len(links) > _MOST_SHOWN))
-        raise ArgumentError(f'link: expected one of {shown}; got {quoted(link)}')
+        raise ArgumentError(f'{field}: {quoted(link)} is not a link of the robot'
+                            + (suggestion(link, links) or f'; expected one of {shown}'))
 
 
 def gravity_vector(value):

@@ -4,10 +4,11 @@ from collections import Counter
 
 import numpy as np
 
-from ..errors import ArgumentError, quoted
+from ..errors import ArgumentError, quoted, suggestion
 
-# Wrong names that an error message lists: somebody may send a million.
+# Names that an error message lists: a request may have a million wrong ones.
 _MOST_SHOWN = 5
+_MOST_AVAILABLE = 50
 
 
 class JointSelection:
@@ -43,18 +44,20 @@ class JointSelection:
         """
         available = robot.joint_names
         self.names = tuple(names) or available
+        self._available = available
+        self._leaders = {name: available[place] for name, place in
+                         zip(robot.tree.body_names, robot.tree.coordinate, strict=True)}
         # Counted once: looking for each name among all takes seconds for ten thousand.
-        count, known = Counter(self.names), set(available)
-        followers = dict(zip(robot.tree.body_names, robot.tree.coordinate, strict=True))
-        unknown = [name for name in count if name not in known]
-        wrong = _listed([name for name in unknown if name not in followers],
-                        'is not a joint that can be moved')
-        wrong += [f'{quoted(name)} follows {available[followers[name]]!r}: leave it out'
-                  for name in unknown if name in followers][:_MOST_SHOWN]
-        wrong += _listed(sorted(name for name in count if count[name] > 1), 'is given twice')
+        count = Counter(self.names)
+        known = set(available)
+        wrong = self._unknown([name for name in count if name not in known], available)
+        wrong += _listed([name for name in count if count[name] > 1], 'is given twice')
         if wrong:
-            raise ArgumentError(f'joints: {"; ".join(wrong)}; available: {", ".join(available)}')
-        self.index = np.array([available.index(name) for name in self.names], dtype=np.intp)
+            raise ArgumentError(f'joints: {"; ".join(wrong)}; available: '
+                                + ', '.join(available[:_MOST_AVAILABLE])
+                                + (', ...' if len(available) > _MOST_AVAILABLE else ''))
+        place = {name: i for i, name in enumerate(available)}
+        self.index = np.array([place[name] for name in self.names], dtype=np.intp)
 
     def permutation(self, names):
         """
@@ -77,17 +80,32 @@ class JointSelection:
         """
         if not names:
             return np.arange(len(self.names))
-        if len(names) != len(self.names) or sorted(names) != sorted(self.names):
-            # As many as it takes to see the mistake: somebody may send a million.
-            shown = [quoted(name) for name in names[:len(self.names) + 1]]
-            more = f' and {len(names) - len(shown)} more' if len(names) > len(shown) else ''
-            raise ArgumentError(f'joint_names: expected a permutation of {list(self.names)}, '
-                                f'got [{", ".join(shown)}]{more}')
+        if len(names) != len(self.names) or set(names) != set(self.names):
+            raise ArgumentError(f'joint_names: {"; ".join(self._differences(names))}; expected '
+                                f'each of {len(self.names)} joints once, or no name at all')
         return np.array([self.names.index(name) for name in names], dtype=np.intp)
 
+    def _differences(self, names):
+        count, known = Counter(names), set(self.names)
+        wrong = self._unknown([name for name in count if name not in known], self.names)
+        wrong += _listed([name for name in count if count[name] > 1], 'is given twice')
+        return wrong + _listed([name for name in self.names if name not in count], 'is missing')
 
-def _listed(names, what):
-    sentences = [f'{quoted(name)} {what}' for name in names[:_MOST_SHOWN]]
+    def _unknown(self, unknown, expected):
+        # What is wrong with names that are none of the expected ones.
+        movable = set(self._available)
+        not_chosen = [name for name in unknown if name in movable]
+        followers = [name for name in unknown if name in self._leaders and name not in movable]
+        strange = [name for name in unknown if name not in self._leaders]
+        return [*_listed(strange, 'is not a joint that can be moved',
+                         lambda name: suggestion(name, expected)),
+                *_listed(not_chosen, 'is not one of the chosen joints'),
+                *_listed(followers, 'follows',
+                         lambda name: f' {quoted(self._leaders[name])}: leave it out')]
+
+
+def _listed(names, what, rest=lambda name: ''):
+    sentences = [f'{quoted(name)} {what}{rest(name)}' for name in names[:_MOST_SHOWN]]
     if len(names) > _MOST_SHOWN:
-        sentences.append(f'so it is for {len(names) - _MOST_SHOWN} more')
+        sentences.append(f'and {len(names) - _MOST_SHOWN} more like these')
     return sentences

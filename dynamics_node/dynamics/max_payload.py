@@ -96,9 +96,10 @@ def max_payload(model, q, link, point, qd, qdd, effort_limits):
     limits = checked_limits(effort_limits, n)
     body, position = _in_body(model.tree, link, point)
     effort = model.inverse_dynamics(q, qd, qdd)
-    per_kg = _per_kilogram(model, body, position,
-                           [np.broadcast_to(np.asarray(value, dtype=float), effort.shape)
-                            for value in (q, qd, qdd)])
+    with np.errstate(all='ignore'):  # a point beyond all robots: NaN, and so is the mass
+        per_kg = _per_kilogram(model, body, position,
+                               [np.broadcast_to(np.asarray(value, dtype=float), effort.shape)
+                                for value in (q, qd, qdd)])
     with np.errstate(all='ignore'):  # no force or no limit: infinite, or not used
         mass = np.where(per_kg == 0.0, np.inf,
                         (limits - np.sign(per_kg) * effort) / np.abs(per_kg))

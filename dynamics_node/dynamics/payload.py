@@ -84,7 +84,13 @@ def make_payload(links, link, mass, com, inertia):
     if not np.isfinite(mass):
         raise ArgumentError(f'payload mass: expected a finite number, kg, got {mass}')
     payload = Payload(link, mass, com, inertia)
-    check_physical(payload.pseudo_inertia)
+    with np.errstate(over='ignore', invalid='ignore'):  # said in words instead
+        matrix = payload.pseudo_inertia
+    if not np.isfinite(matrix).all():
+        raise ArgumentError('payload: expected second moments that are finite, got them of mass '
+                            f'{mass:g}, com {com.tolist()} and an inertia tensor of up to '
+                            f'{np.abs(inertia).max():g}')
+    check_physical(matrix)
     return payload
 
 

@@ -162,7 +162,7 @@ class RobotModel:
 
     @property
     def tip_link(self):
-        """Name of the last link of the longest chain of joints."""
+        """Name of the link at the end of the arm: of a tool or a hand, not of a finger."""
         return self._tree.tip_link
 
     @property
@@ -344,8 +344,9 @@ class RobotModel:
         Returns
         -------
         bool
-            Whether this model's is in use. It never is for robots with very many joints (more
-            than about 16 in one chain), on Pythons other than CPython 3.11 and later, and with
+            Whether this model's is in use. It never is for robots of which one quantity takes
+            more than 15 000 operations (somewhere between 16 and 30 joints, depending on the
+            robot's shape), on Pythons other than CPython 3.11 and later, and with
             DYNAMICS_NODE_SPECIALISE=0.
 
         """

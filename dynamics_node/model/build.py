@@ -1,8 +1,11 @@
 """From a checked description to the tree of moving bodies."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from .mimic import resolve_mimic
+from .tip_link import tip_link
 from .tree import KinematicTree, LinkFrame, PRISMATIC, REVOLUTE
 from ..errors import RobotDescriptionError
 from ..inertia import combine
@@ -55,6 +58,7 @@ def build_tree(description):
         inertia=inertia[:-1],
         base_inertia=inertia[-1],
         links=links,
+        tip_link=description.root,
         limits=_stack([(joint.lower, joint.upper, joint.velocity, joint.effort)
                        for joint in free], (4,)),
         friction=_friction(moving, resolved, index),
@@ -62,7 +66,7 @@ def build_tree(description):
         hardware_plugins=description.hardware_plugins,
     )
     _refuse_overflow(tree)
-    return tree
+    return replace(tree, tip_link=tip_link(tree, description))
 
 
 def _walk(description):

@@ -61,6 +61,9 @@ class KinematicTree:
         J of what is fixed to the root link, in the base frame; no joint feels it.
     links : dict of str to LinkFrame
         Every link of the URDF.
+    tip_link : str
+        The link at the end of the arm, before the fingers of a hand; the root link if nothing
+        moves.
     limits : numpy.ndarray, shape (n, 4)
         Lower, upper (rad or m; infinite if none), velocity, effort (NaN if none) per joint.
     friction : numpy.ndarray, shape (n, 2)
@@ -86,6 +89,7 @@ class KinematicTree:
     inertia: np.ndarray
     base_inertia: np.ndarray
     links: dict
+    tip_link: str
     limits: np.ndarray
     friction: np.ndarray
     warnings: tuple
@@ -101,15 +105,6 @@ class KinematicTree:
         """Which bodies' joints are independent, bool, shape (N,); the others mimic one."""
         independent = set(self.joint_names)
         return np.array([name in independent for name in self.body_names], dtype=bool)
-
-    @property
-    def tip_link(self):
-        """The last link of the longest chain of moving bodies; the root link if nothing moves."""
-        depth: list[int] = []
-        for parent in self.parent:
-            depth.append(1 if parent < 0 else depth[parent] + 1)
-        return max(reversed(self.links), key=lambda link: (
-            depth[self.links[link].body] if self.links[link].body >= 0 else 0))
 
     @property
     def mimic_matrix(self):

@@ -12,7 +12,6 @@ from .defaults import SAMPLES, SEED
 from .entries import body_entries, joint_entries, link_entries
 from .findings import find_all
 from .loads import gravity_load
-from .payload_link import default_payload_link
 from .report import Report
 from .study import Study
 from ..dynamics.arguments import check_link, gravity_vector
@@ -39,7 +38,7 @@ def make_report(source, *, gravity=STANDARD_GRAVITY, samples=SAMPLES, seed=SEED,
     seed : int
         Of their positions, >= 0.
     link : str, optional
-        That carries a payload; see `default_payload_link`.
+        That carries a payload; see `RobotModel.tip_link`.
     point : array_like, shape (3,)
         Where the payload is in the link's frame, m.
     progress : callable(fraction, what), optional
@@ -106,7 +105,7 @@ def _with_dynamics(report, study, link, point, tell):
     model = study.model
     is_guessed = link is None
     if link is None:
-        link = default_payload_link(model.tree, study.description)
+        link = model.tip_link
     check_link(model.tree.links, link)
     report = replace(report, joint_names=model.joint_names, model=model,
                      bodies=body_entries(model.tree, study.description))

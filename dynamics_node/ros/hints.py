@@ -12,6 +12,8 @@ from ..errors import quoted
 PATIENCE = 5.0
 # The shortest time between two of them, s.
 REPEAT_EVERY = 10.0
+# Seconds without any message after which none is said to come; `give` is called once a second.
+QUIET = 2.0
 # Names that a hint shows of a list.
 SHOWN = 8
 # How drivers call joint states that are not complete or not filtered.
@@ -44,12 +46,15 @@ class Hints:
         self._start = now()
         self._due = Throttle(REPEAT_EVERY, now)
         self._rejected: Counter = Counter()  # before joints began to be missing
+        self._messages, self._last_message = 0, self._start
 
     def give(self):
         """Log what is missing and what to type, if something is missing for too long."""
+        robot = self._get_robot()
+        if robot is not None:
+            self._count_messages(robot.buffer)
         if self._now() - self._start < PATIENCE:
             return
-        robot = self._get_robot()
         if robot is None:
             self._say(self._about_description)
             return
@@ -58,6 +63,11 @@ class Hints:
             self._say(lambda: self._about_states(robot, missing))
         else:
             self._rejected = Counter(robot.buffer.rejected)
+
+    def _count_messages(self, buffer):
+        messages = buffer.accepted + buffer.rejected.total()
+        if messages != self._messages:
+            self._messages, self._last_message = messages, self._now()
 
     def _say(self, text):
         if self._due.is_due():
@@ -69,8 +79,8 @@ class Hints:
         lines += self._heard_elsewhere(subscription, 'robot_description')
         if len(lines) == 1:
             lines += [
-                'Publish it: ros2 run robot_state_publisher robot_state_publisher --ros-args -p '
-                'robot_description:="$(cat my_arm.urdf)"',
+                # Not as a parameter on the command line: rcl reads it as YAML, which most are not.
+                'Publish it: ros2 run robot_state_publisher robot_state_publisher my_arm.urdf',
                 'or start this node with it: ros2 run dynamics_node dynamics_node --ros-args -p '
                 'robot_description_file:=my_arm.urdf']
         return '\n  '.join(lines)
@@ -82,13 +92,19 @@ class Hints:
         if len(lines) > 1:
             return '\n  '.join(lines)
         heard = robot.buffer.newest_names
+        namespace = topic.rpartition('/')[0]
         if not self._node.count_publishers(topic):
-            lines += ['Nobody publishes there' + (' any more.' if heard else '.'),
-                      'Start the broadcaster: ros2 control load_controller --set-state active '
-                      'joint_state_broadcaster']
+            lines += ['No node publishes there' + (' any more.' if heard else '.'),
+                      f'Start the broadcaster: ros2 control load_controller{_manager(namespace)} '
+                      '--set-state active joint_state_broadcaster']
         elif not heard:
-            lines.append('Somebody publishes there, but nothing comes: ros2 topic info --verbose '
+            lines.append('A node publishes there, but nothing comes: ros2 topic info --verbose '
                          f'{topic}')
+        elif self._now() - self._last_message > QUIET:
+            # The publisher is still known some time after its process was killed.
+            lines.append(f'Nothing comes any more; {_some([quoted(name) for name in heard])} came '
+                         'last. Look whether the broadcaster is still active:  ros2 control '
+                         f'list_controllers{_manager(namespace)}')
         else:
             lines += _about_names(robot, missing, heard, topic,
                                   Counter(robot.buffer.rejected) - self._rejected)
@@ -101,10 +117,18 @@ class Hints:
             return [f'{text}.' for text in texts]
         if self._node.count_publishers(subscription.topic_name):
             return []
-        own = self._node.get_namespace().rstrip('/')
         return [f'But {topic} has it: add to the command line  --ros-args '
-                f'{_rule(topic, name, own)}'
+                f'{self._rule(topic, name)}'
                 for topic in published_elsewhere(self._node, subscription, endings)]
+
+    def _rule(self, topic, name):
+        # Where the description is, everything else of that robot is, too. A broadcaster with
+        # topics of its own has only its states there.
+        namespace, _, last = topic.rpartition('/')
+        is_robot = namespace and self._node.count_publishers(f'{namespace}/robot_description')
+        if last == name and is_robot and not self._node.get_namespace().rstrip('/'):
+            return f'-r __ns:={namespace}'
+        return f'-r {name}:={topic}'
 
 
 def unheard(node, publisher):
@@ -130,7 +154,7 @@ def unheard(node, publisher):
                 'is an effort controller, start the node with  --ros-args -p '
                 f'command_topic:={listened[0]}')
     namespace, _, controller = topic.rpartition('/')[0].rpartition('/')
-    manager = f' --controller-manager {namespace}/controller_manager' if namespace else ''
+    manager = _manager(namespace)
     # Only who listens before the output is on sees the ramp.
     return ('nobody listens there: call ~/enable with false first, because a controller that '
             'begins to listen now gets the whole effort at once; then look with  ros2 control '
@@ -139,11 +163,9 @@ def unheard(node, publisher):
             'command_topic to that of another effort controller')
 
 
-def _rule(topic, name, own):
-    namespace, _, last = topic.rpartition('/')
-    if last == name and namespace != own and not own:
-        return f'-r __ns:={namespace}'  # everything else of that robot is there, too
-    return f'-r {name}:={topic}'
+def _manager(namespace):
+    # What `ros2 control` needs besides in a namespace: without it, it waits for ever.
+    return f' --controller-manager {namespace}/controller_manager' if namespace else ''
 
 
 def _about_names(robot, missing, heard, topic, rejected):

@@ -61,7 +61,7 @@ def configured(robot, values, before=None):
         model = model.with_friction(*_friction(robot, values))
     if has_changed('payload.link', 'payload.mass', 'payload.com', 'payload.inertia'):
         if values['payload.link']:
-            check_link(model.tree.links, values['payload.link'])
+            check_link(model.tree.links, values['payload.link'], 'payload.link')
         model = model.with_payload(values['payload.link'], values['payload.mass'],
                                    values['payload.com'], tensor(values['payload.inertia']))
     return model

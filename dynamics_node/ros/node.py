@@ -192,7 +192,9 @@ class DynamicsNode(Node):
         if not self.path.is_on:
             self.source.offer_pending()  # a description that came while the output was on
         self._hints.give()
-        self.states.count_publishers()
+        self.states.adapt_queue()
+        if self._robot is not None:
+            self._robot.state_publishers = self.states.publishers
         self._diagnostics.measure()
         self._diagnostics.publish()
 

@@ -40,7 +40,8 @@ PARAMETERS = (
     Parameter('state_timeout', DOUBLE, 0.1, 'Largest age of a joint state, s, on the steady '
               'clock', low=0.0, low_open=True, high=10.0),
     Parameter('allow_several_state_publishers', FLAG, False, 'Enable although joint_states has '
-              'several publishers: where arm and gripper have a broadcaster each', read_only=True),
+              'several publishers: where arm and gripper have a broadcaster each. No state of one '
+              'then takes the place of one of the other in the queue', read_only=True),
     Parameter('allow_self_compensating_arm', FLAG, False, 'Enable although the ros2_control '
               'hardware plugin in the URDF drives an arm that compensates gravity itself: a '
               'second gravity torque pushes such an arm up (docs/arms.md)'),
@@ -86,7 +87,7 @@ PARAMETERS = (
     Parameter('payload.mass', DOUBLE, 0.0, 'Mass of the payload, kg; 0: there is none', low=0.0,
               high=1e5),
     Parameter('payload.com', DOUBLES, (0.0, 0.0, 0.0), 'Centre of mass of the payload in the '
-              'frame of its link, m', length=3),
+              'frame of its link, m', length=3, low=-1000.0, high=1000.0),
     Parameter('payload.inertia', DOUBLES, (0.0,) * 6, 'Inertia tensor of the payload about its '
               'centre of mass along the axes of its link, kg m²: ixx, ixy, ixz, iyy, iyz, izz',
               length=6),

@@ -1,12 +1,27 @@
 """Quality of service of every topic, in one place."""
 
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import (
+    QoSDurabilityPolicy,
+    QoSHistoryPolicy,
+    QoSPolicyKind,
+    QoSProfile,
+    QoSReliabilityPolicy,
+)
+from rclpy.qos_overriding_options import QoSOverridingOptions
 
 
 def _newest(reliability, durability=QoSDurabilityPolicy.VOLATILE, depth=1):
     return QoSProfile(history=QoSHistoryPolicy.KEEP_LAST, depth=depth, reliability=reliability,
                       durability=durability)
+
+
+# Places in the queue of joint_states, for one publisher and for several.
+SINGLE_DEPTH, SHARED_DEPTH = 1, 8
+# rclpy's default policies leave out the durability.
+JOINT_STATES_OVERRIDES = QoSOverridingOptions((
+    QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY,
+    QoSPolicyKind.DURABILITY))
 
 
 def joint_states(several_publishers):
@@ -18,7 +33,8 @@ def joint_states(several_publishers):
     would be lost whenever the gripper's comes right behind it; so then there are more places.
 
     """
-    return _newest(QoSReliabilityPolicy.BEST_EFFORT, depth=8 if several_publishers else 1)
+    return _newest(QoSReliabilityPolicy.BEST_EFFORT,
+                   depth=SHARED_DEPTH if several_publishers else SINGLE_DEPTH)
 
 
 # As robot_state_publisher publishes it: whoever comes later still gets it.

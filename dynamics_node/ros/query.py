@@ -7,6 +7,9 @@ import numpy as np
 from .messages import from_field, to_field
 from ..errors import ArgumentError
 
+# Joints that a refusal lists.
+_MOST_SHOWN = 8
+
 
 class Query:
     """
@@ -22,7 +25,8 @@ class Query:
     message : str
         Where this state comes from, for people.
     unseen : str
-        What to append to it about joints that were not asked for.
+        What to append to it: joints of unknown position that were not asked for, and given
+        positions beyond the limits.
 
     """
 
@@ -56,7 +60,8 @@ class Query:
         self.has_all_in_order = robot.has_all_in_order and not request.joint_names
         if len(request.position):
             self.q = robot.buffer.position
-            self.q[self.index] = self._checked('position', request.position)
+            given = self.q[self.index] = self._checked('position', request.position)
+            self.unseen += robot.beyond_limits(self.index, given)
             self.message = 'at the given position'
         else:
             self.q = robot.measured_position(time.monotonic(), timeout)
@@ -114,8 +119,30 @@ class Query:
             raise ArgumentError(f'{name}: expected {len(self.names)} values for '
                                 f'{", ".join(self.names)}, or none; got {values.size}')
         if not np.isfinite(values).all():
-            raise ArgumentError(f'{name}: expected finite values, got {values.tolist()}')
+            raise ArgumentError(f'{name}: expected finite values, got '
+                                + not_finite(self.names, values))
         return values
+
+
+def not_finite(names, values):
+    """
+    Return which of some values are not finite, in words.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The m joints.
+    values : numpy.ndarray, shape (m,)
+
+    Returns
+    -------
+    str
+        "nan for elbow_pitch", at most eight of them.
+
+    """
+    wrong = np.flatnonzero(~np.isfinite(values))
+    more = f' and {len(wrong) - _MOST_SHOWN} more' if len(wrong) > _MOST_SHOWN else ''
+    return ', '.join(f'{values[i]} for {names[i]}' for i in wrong[:_MOST_SHOWN]) + more
 
 
 def finite(values):

@@ -39,6 +39,10 @@ def read_robot(source, values):
     return Robot(RobotModel(tree) if values['machine_code'] else one_off_model(tree),
                  values['joints'])
 
+# Joints that a message lists as beyond their position limits.
+_MOST_SHOWN = 8
+_ROUNDING = 1e-9
+
 
 class StateUnavailableError(DynamicsError):
     """The newest measured state was asked for, and there is none that is fresh."""
@@ -61,6 +65,8 @@ class Robot:
         be picked out.
     refused_since : str
         Why a newer description was refused; '' if none was.
+    state_publishers : int
+        How many nodes publish its joint states; 0 while that is not known.
 
     """
 
@@ -88,6 +94,7 @@ class Robot:
         self.refused_since = ''
         self._asked: tuple | None = None
         self._answer = model
+        self.state_publishers = 0
         self.has_all_in_order = self.selection.names == tuple(model.joint_names)
 
     def configure(self, values, before=None):
@@ -190,10 +197,42 @@ class Robot:
         """
         stale = self.buffer.stale_joints(now, timeout)
         if stale:
+            shared = (f'; {self.state_publishers} nodes publish joint_states: if an arm and its '
+                      'gripper have a broadcaster each, set allow_several_state_publishers at '
+                      'the start' if self.state_publishers > 1 else '')
             raise StateUnavailableError(
                 f'no joint state within {timeout:g} s for {", ".join(stale)}: publish '
-                'joint_states, or give positions in the request')
+                f'joint_states, or give positions in the request{shared}')
         return self.buffer.position
+
+    def beyond_limits(self, index, positions):
+        """
+        Return which positions in a request are beyond the position limits.
+
+        Parameters
+        ----------
+        index : numpy.ndarray of int, shape (m,)
+            Places of the joints in the request.
+        positions : numpy.ndarray, shape (m,) or (N, m)
+            Of one state or of N, rad or m.
+
+        Returns
+        -------
+        str
+            To append to a message: of each such joint the position furthest beyond, at most
+            eight joints; '' if there is none.
+
+        """
+        lower, upper = self.model.position_limits[index].T
+        # A position that was computed to be at the limit may differ by rounding.
+        slack = _ROUNDING * np.maximum(1.0, np.abs(positions))
+        excess = np.atleast_2d(np.maximum(lower - positions, positions - upper) - slack)
+        furthest = np.atleast_2d(positions)[excess.argmax(axis=0), np.arange(len(index))]
+        beyond = np.flatnonzero(excess.max(axis=0) > 0.0)
+        shown = [f'{self.model.joint_names[index[i]]} at {furthest[i]:.6g} (limits {lower[i]:g} '
+                 f'to {upper[i]:g})' for i in beyond[:_MOST_SHOWN]]
+        more = f' and {len(beyond) - len(shown)} more' if len(beyond) > len(shown) else ''
+        return f'; beyond the position limits: {", ".join(shown)}{more}' if shown else ''
 
     def unseen_others(self, index, now, timeout):
         """
@@ -202,7 +241,7 @@ class Robot:
         Parameters
         ----------
         index : numpy.ndarray of int
-            Places of the joints that are not meant.
+            Places of the joints in the request.
         now : float
             Steady clock, s.
         timeout : float

@@ -7,9 +7,15 @@ import numpy as np
 
 from .answering import Answering
 from .guard import guarded_service
+from .parameter_table import ParameterError
+from ..dynamics.arguments import check_link
 from ..errors import ArgumentError
 
 _TENSOR = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
+# Parameters of which a refusal speaks, and the request's fields that they were set from.
+_FIELDS = {'payload.link': 'link', 'payload.mass': 'inertia.m', 'payload.com': 'inertia.com',
+           'payload.inertia': 'inertia.ixx to izz', 'payload com': 'inertia.com',
+           'payload inertia': 'inertia.ixx to izz'}
 # Anywhere on the surface of the earth gravity is between these, m/s².
 _LEAST, _MOST = 9.76, 9.84
 
@@ -41,8 +47,13 @@ class SettingServices(Answering):
             elif not link:
                 raise ArgumentError('link: expected the one that carries the payload, got none: '
                                     f'one of {", ".join(robot.model.link_names)}')
-            self.parameters.set({'payload.link': link, 'payload.mass': mass, 'payload.com': com,
-                                 'payload.inertia': six})
+            else:
+                check_link(robot.model.tree.links, link)
+            try:
+                self.parameters.set({'payload.link': link, 'payload.mass': mass,
+                                     'payload.com': com, 'payload.inertia': six})
+            except ParameterError as error:
+                raise ParameterError(_with_fields(str(error))) from error
             over = robot.over_limits(self.parameters.values)
             if not mass:
                 return 'nothing is carried'
@@ -81,10 +92,7 @@ class SettingServices(Answering):
         return self._with_gravity(response)
 
     def _turned(self, robot, frame, vector):
-        try:
-            robot.model.link_pose(robot.model.neutral_position, frame)
-        except ArgumentError as error:
-            raise ArgumentError(f'header.frame_id: {error}') from error
+        check_link(robot.model.tree.links, frame, 'header.frame_id')
         timeout = self.parameters['state_timeout']
         # Every joint that turns it, also those that are not in `joints`, and no other.
         if stale := robot.buffer.stale_joints(time.monotonic(), timeout,
@@ -122,3 +130,9 @@ def _joints_to(tree, link):
         joints.add(int(tree.coordinate[body]))
         body = tree.parent[body]
     return sorted(joints)
+
+
+def _with_fields(text):
+    for parameter, field in _FIELDS.items():
+        text = text.replace(parameter, field)
+    return text

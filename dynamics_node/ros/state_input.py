@@ -2,12 +2,18 @@
 
 import time
 
-from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.qos import QoSHistoryPolicy
 from sensor_msgs.msg import JointState
 
 from .guard import guarded
 from .joint_state_reader import JointStateReader
-from .qos import joint_states, NO_SUBSCRIPTION_EVENTS
+from .qos import (
+    joint_states,
+    JOINT_STATES_OVERRIDES,
+    NO_SUBSCRIPTION_EVENTS,
+    SHARED_DEPTH,
+    SINGLE_DEPTH,
+)
 from .throttle import Throttle
 from ..safety import RejectedStateError
 
@@ -60,11 +66,36 @@ class StateInput:
         self._has_unstamped = False
         self._warnings: dict[str, Throttle] = {}
         self.publishers = self.skipped = 0
-        self.subscription = node.create_subscription(
-            JointState, 'joint_states', self._bytes_received if raw else self._received,
-            joint_states(parameters['allow_several_state_publishers']),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=raw)
+        self._callback, self._raw = self._bytes_received if raw else self._received, raw
+        # Changed in place by the overrides.
+        self._profile = joint_states(parameters['allow_several_state_publishers'])
+        self.subscription = self._subscribe(qos_overriding_options=JOINT_STATES_OVERRIDES)
+        # Not where the parameters say how deep it is to be.
+        self._adapts = (self._profile.depth == SINGLE_DEPTH
+                        and self._profile.history == QoSHistoryPolicy.KEEP_LAST)
+
+    def _subscribe(self, **options):
+        return self._node.create_subscription(
+            JointState, 'joint_states', self._callback, self._profile,
+            event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=self._raw, **options)
+
+    def adapt_queue(self):
+        """
+        Count the publishers, and give the queue a place for each while the output is off.
+
+        One place lets the newest state win, but of an arm's and a gripper's state that come
+        together it keeps only one. A new subscription may miss some states at first, so it is
+        not made while efforts are sent.
+
+        """
+        several = self.count_publishers() > 1
+        depth = SHARED_DEPTH if several else SINGLE_DEPTH
+        if not self._adapts or depth == self._profile.depth or self._path.is_on:
+            return
+        self._profile.depth = depth
+        before, self.subscription = self.subscription, self._subscribe()
+        self._node.destroy_subscription(before)
+        self._sequence_number = 0
 
     @property
     def topic(self):

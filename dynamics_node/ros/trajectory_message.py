@@ -4,6 +4,7 @@ from array import array
 
 import numpy as np
 
+from .query import not_finite
 from ..dynamics import JointSelection
 from ..errors import ArgumentError
 
@@ -71,7 +72,7 @@ class TrajectoryArrays:
             place = int(np.argmin(np.isfinite(numbers).all(axis=1)))
             point = int(np.flatnonzero(lengths)[place])
             raise ArgumentError(f'trajectory.points[{point}].{name}: expected finite numbers, or '
-                                f'none; got {numbers[place].tolist()}')
+                                f'none; got {not_finite(self.names, numbers[place])}')
         values = np.full((len(fields), count), np.nan)
         values[lengths == count] = numbers
         return values

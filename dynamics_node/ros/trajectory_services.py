@@ -52,20 +52,19 @@ class TrajectoryServices(Answering):
             if request.with_friction:
                 efforts = efforts + model.friction_torque(qd)
                 notes.append('with friction')
-            efforts = finite(efforts[:, motion.index])
-            limits = self._limits(robot)[motion.index]
-            over = over_limit(efforts, limits)
-            put_efforts(trajectory.points, efforts)
+            # The other joints have limits as well: they hold what the trajectory moves.
+            limits = self._limits(robot)
+            over = over_limit(finite(efforts), limits)
+            put_efforts(trajectory.points, efforts[:, motion.index])
             trajectory.joint_names = list(motion.names)
             response.trajectory = trajectory
             response.within_limits = not len(over.points)
             response.points_over_limit = over.points.tolist()
-            response.joints_over_limit = [motion.names[i] for i in over.joints]
-            response.peak_effort = to_field(over.peak_effort)
-            response.effort_limits = to_field(limits)
+            response.joints_over_limit = [robot.model.joint_names[i] for i in over.joints]
+            response.peak_effort = to_field(over.peak_effort[motion.index])
+            response.effort_limits = to_field(limits[motion.index])
             if len(over.points):
-                notes.append(f'{len(over.points)} points above the effort limit of '
-                             + ', '.join(response.joints_over_limit))
+                notes.append(_over_in_words(over, limits, robot.model.joint_names, motion.index))
             return ('; '.join(notes) or 'all velocities and accelerations were given'
                     ) + motion.unseen
         return self.answer(response, fill)
@@ -103,6 +102,9 @@ class TrajectoryServices(Answering):
             response.limiting_point = place if request.trajectory.points else -1
             response.effort = to_field(finite(effort[index]))
             response.effort_limits = to_field(limits[index])
+            if joint >= 0 and joint not in index:
+                notes.insert(0, f'{response.limiting_joint} is not in joint_names: it needs '
+                             f'{effort[joint]:.6g} of {limits[joint]:.6g}')
             return '; '.join([_in_words(mass, response.limiting_joint, link), *notes]) + unseen
         return self.answer(response, fill)
 
@@ -129,6 +131,16 @@ class TrajectoryServices(Answering):
         return limits
 
 
+def _over_in_words(over, limits, names, index):
+    # Joints that are not in the trajectory have no place in the arrays of the answer.
+    count = len(over.points)
+    joints = [names[i] if i in index else
+              f'{names[i]} (not in the trajectory: up to {over.peak_effort[i]:.6g} of '
+              f'{limits[i]:.6g})' for i in over.joints.tolist()]
+    return (f'{count} point{"s" if count > 1 else ""} above the effort limit of '
+            + ', '.join(joints))
+
+
 def _in_words(mass, joint, link):
     if not joint:
         return f'no effort limit is in the way of a mass on {link}'
@@ -150,4 +162,5 @@ class _Motion:
                        arrays.whole(motion.velocities, rest),
                        arrays.whole(motion.accelerations, rest))
         self.notes = [motion.obtained] if motion.obtained else []
-        self.unseen = robot.unseen_others(arrays.index, time.monotonic(), timeout)
+        self.unseen = (robot.unseen_others(arrays.index, time.monotonic(), timeout)
+                       + robot.beyond_limits(arrays.index, motion.positions))

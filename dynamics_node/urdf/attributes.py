@@ -88,7 +88,7 @@ def number_problems(robot):
 def _soft_limits(joint, where):
     limit = joint.find('limit')
     given = {} if limit is None else limit.attrib
-    return [f'{where}: <limit> {name}: expected a number, got {quoted(given[name])}'
+    return [f'{where}: <limit> {name}: expected a number, got {_shown(given[name])}'
             for name in ('effort', 'velocity')
             if name in given and not is_number(given[name]) and not _UNLIMITED.fullmatch(
                 given[name].strip(_BLANKS))]
@@ -117,4 +117,10 @@ def _in_attribute(element, where, name, count, required):
         expected = f'at most {LARGEST:g}'
     else:
         return []
-    return [f'{where}: expected {expected}, got {quoted(text)}']
+    return [f'{where}: expected {expected}, got {_shown(text)}']
+
+
+def _shown(text):
+    # The beginning of what xacro computes or replaces.
+    is_xacro = '${' in text or '$(' in text
+    return quoted(text) + ('; a xacro file must be expanded first' if is_xacro else '')

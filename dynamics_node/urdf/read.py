@@ -3,6 +3,7 @@
 import io
 import math
 from xml.etree import ElementTree
+from xml.parsers import expat
 
 import numpy as np
 
@@ -104,14 +105,8 @@ def _element(source):
     # The <robot> element and the robot's name.
     text = load_text(source)
     check_text(text)
-    try:
-        # The encoding is settled; what an XML declaration says behind a byte order mark is not
-        # looked up.
-        robot = ElementTree.fromstring(text, ElementTree.XMLParser(encoding='utf-8'))
-    except ElementTree.ParseError as error:  # a prefix that no xmlns declares
-        raise RobotDescriptionError([f'it is not XML: {error}; a xacro file must be expanded '
-                                     'first']) from error
-    if any('xacro' in element.tag for element in robot.iter()):
+    robot = _tree(text)
+    if _has_xacro(robot):
         raise RobotDescriptionError(['it contains xacro elements: expand it first, with '
                                      '`xacro robot.urdf.xacro > robot.urdf`'])
     return robot, robot.get('name') or 'robot'
@@ -121,6 +116,28 @@ def _hardware_plugins(robot):
     # For safety alone: some drivers compensate gravity themselves.
     texts = (plugin.text or '' for plugin in robot.findall('ros2_control/hardware/plugin'))
     return tuple(dict.fromkeys(text.strip() for text in texts if text.strip()))
+
+
+def _tree(text):
+    # Without name spaces, as urdfdom reads it: public URDFs have attributes and elements of
+    # prefixes that nothing declares (drake:acceleration), which nothing here looks at. The
+    # encoding is settled; what an XML declaration says behind a byte order mark is not looked up.
+    builder = ElementTree.TreeBuilder()
+    parser = expat.ParserCreate(encoding='utf-8')
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.Parse(text, True)
+    return builder.close()
+
+
+def _has_xacro(robot):
+    # Its elements are called so by a prefix, usually this one.
+    prefixes = {'xacro'}
+    for element in robot.iter():
+        prefixes |= {name.removeprefix('xmlns:') for name, value in element.items()
+                     if name.startswith('xmlns:') and 'xacro' in value}
+    return any(element.tag.partition(':')[0] in prefixes for element in robot.iter()
+               if ':' in element.tag)
 
 
 def _needed(element):

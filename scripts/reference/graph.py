@@ -21,7 +21,7 @@ class Entry:
 SUBSCRIBED = (
     Entry('joint_states', 'sensor_msgs/msg/JointState',
           'By name: any order, parts, other joints besides, no velocity: all fine. Best effort, '
-          'the newest wins'),
+          'the newest wins. With several publishers, none loses its state to another one'),
     Entry('robot_description', 'std_msgs/msg/String',
           'As robot_state_publisher publishes it, transient local; not where a parameter '
           'gives it'),
@@ -57,7 +57,7 @@ SERVICES = (
     Entry('~/inverse_dynamics', 'dynamics_interfaces/srv/InverseDynamics',
           'The efforts of a motion, with or without friction and gravity'),
     Entry('~/forward_dynamics', 'dynamics_interfaces/srv/ForwardDynamics',
-          'The accelerations that efforts cause; joints not asked for are held'),
+          'The accelerations that efforts cause; joints that are not in `joints` are held'),
     Entry('~/get_jacobian', 'dynamics_interfaces/srv/GetJacobian',
           'J of a point of any link, 6 x n, linear rows first, base frame; and where it is'),
     Entry('~/compute_trajectory_effort', 'dynamics_interfaces/srv/ComputeTrajectoryEffort',

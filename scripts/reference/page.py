@@ -44,7 +44,9 @@ PARAMETERS_TEXT = """A commented file with all of them:
 the start and at run time. Read-only ones are set at the start. Besides these, the node has those
 of every ROS 2 node: `use_sim_time` (on both sides, if a simulation publishes `/clock`),
 `start_type_description_service`, and `qos_overrides./joint_states.subscription.*` (`reliability`,
-`depth`, `history`, `durability`)."""
+`depth`, `history`, `durability`; the topic's resolved name stands in the middle). To hear a state
+that was published before the node started, it needs both `durability:=transient_local` and
+`reliability:=reliable`."""
 
 PROGRAMS = """| command | what it is |
 |---|---|

@@ -43,7 +43,7 @@ def test_a_hundred_thousand_wrong_names_are_refused_at_once_and_in_short():
     begin = time.process_time()
     message = refusal([f'nose {i}' for i in range(100_000)])
     assert time.process_time() - begin < 2.0
-    assert "'nose 4' is not a joint that can be moved; so it is for 99995 more" in message
+    assert "'nose 4' is not a joint that can be moved; and 99995 more like these" in message
     assert len(message) < 1000
 
 
@@ -51,3 +51,33 @@ def test_a_joint_that_follows_another_is_said_to_follow():
     with pytest.raises(ArgumentError, match=r"'right_finger_slide' follows 'left_finger_slide': "
                                             'leave it out; available'):
         JointSelection(ARM, ('right_finger_slide', 'wrist_roll'))
+
+
+def difference(names):
+    """Return why names are no permutation of the first three joints."""
+    with pytest.raises(ArgumentError) as caught:
+        JointSelection(ARM, ARM.joint_names[:3]).permutation(names)
+    return str(caught.value)
+
+
+def test_a_permutation_that_is_none_is_refused_with_the_name_that_is_wrong():
+    yaw, pitch, roll = ARM.joint_names[:3]
+    expected = '; expected each of 3 joints once, or no name at all'
+    assert difference([yaw, 'shoulder_pich', roll]) == (
+        "joint_names: 'shoulder_pich' is not a joint that can be moved, is 'shoulder_pitch' "
+        f"meant?; 'shoulder_pitch' is missing{expected}")
+    assert difference([yaw, pitch, pitch, roll]) == (
+        f"joint_names: 'shoulder_pitch' is given twice{expected}")
+    assert difference([yaw, pitch]) == f"joint_names: '{roll}' is missing{expected}"
+    assert difference([yaw, pitch, roll, 'elbow_pitch']) == (
+        f"joint_names: 'elbow_pitch' is not one of the chosen joints{expected}")
+    assert "'right_finger_slide' follows 'left_finger_slide': leave it out" in difference(
+        [yaw, pitch, roll, 'right_finger_slide'])
+
+
+def test_a_hundred_thousand_names_that_are_no_permutation_are_refused_at_once():
+    begin = time.process_time()
+    message = difference(['x' * 300, *(f'shoulder_pitch {i}' for i in range(100_000))])
+    assert time.process_time() - begin < 2.0
+    assert 'and 99996 more like these' in message
+    assert len(message) < 1500

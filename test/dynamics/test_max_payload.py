@@ -312,7 +312,7 @@ def test_rotors_take_their_share_of_an_acceleration(lift):
 
 
 @pytest.mark.parametrize(('arguments', 'options', 'text'), [
-    (([0.0], 'hook'), {}, "link: expected one of world, hub, rod; got 'hook'"),
+    (([0.0], 'hook'), {}, "'hook' is not a link of the robot; expected one of world, hub, rod"),
     (([0.0], 'rod', (0.0, 0.0)), {}, r'point: expected three finite numbers in the frame'),
     (([0.0], 'rod', (0.0, NAN, 0.0)), {}, r'point: expected .* got \[0.0, nan, 0.0\]'),
     (([0.0, 1.0], 'rod'), {}, r'q: expected shape \(..., 1\)'),
@@ -330,3 +330,9 @@ def test_wrong_input_is_answered_with_what_was_expected_and_what_came(pendulum, 
 def test_where_nothing_has_weight_any_mass_will_do(pendulum, gravity):
     result = pendulum.with_gravity((0.0, 0.0, -gravity)).max_payload([0.3], 'rod')
     assert (result.mass, result.joint) == (INF, -1)
+
+
+def test_a_point_beyond_all_numbers_has_no_answer_and_no_warning(arm):
+    # Warnings are errors here.
+    result = arm.max_payload(np.zeros(8), 'hand', (1e160, 0.0, 0.0))
+    assert np.isnan(result.mass) and result.joint == -1

@@ -103,7 +103,7 @@ def test_a_payload_that_is_no_real_body_is_refused():
 
 
 @pytest.mark.parametrize(('arguments', 'message'), [
-    (('gripper', 1.0), "link: expected one of .*hand.*; got 'gripper'"),
+    (('gripper', 1.0), "link: 'gripper' is not a link of the robot; expected one of .*hand"),
     (('hand', 'heavy'), 'payload mass: expected a number'),
     (('hand', np.nan), 'payload mass: expected a finite number'),
     (('hand', 1.0, (0.0, 0.0)), r'payload com: expected finite numbers of shape \(3,\)'),
@@ -112,3 +112,9 @@ def test_a_payload_that_is_no_real_body_is_refused():
 def test_wrong_arguments_are_refused_in_words(arguments, message):
     with pytest.raises(ArgumentError, match=message):
         RobotModel.from_urdf(ARM7).with_payload(*arguments)
+
+
+def test_a_centre_of_mass_beyond_all_numbers_is_refused_in_words():
+    # Warnings are errors here: numpy must not warn of the overflow.
+    with pytest.raises(ArgumentError, match=r'second moments that are finite, .*1e\+200'):
+        RobotModel.from_urdf(ARM7).with_payload('hand', 1.0, (1e200, 0.0, 0.0))

@@ -6,10 +6,11 @@ from xml.etree import ElementTree
 
 _TAGS = ('robot', 'link', 'joint', 'inertial', 'mass', 'inertia', 'origin', 'axis', 'limit',
          'dynamics', 'mimic', 'parent', 'child', 'visual', 'geometry', 'mesh', 'gazebo', 'x',
-         'xacro:include', 'Link')
+         'xacro:include', 'Link', 'drake:link', 'drake:x:y')
 _ATTRIBUTES = ('name', 'type', 'link', 'joint', 'xyz', 'rpy', 'value', 'ixx', 'ixy', 'ixz', 'iyy',
                'iyz', 'izz', 'lower', 'upper', 'effort', 'velocity', 'damping', 'friction',
-               'multiplier', 'offset', 'filename', 'xml:id', 'xml:base', 'xml:space', 'xmlns')
+               'multiplier', 'offset', 'filename', 'xml:id', 'xml:base', 'xml:space', 'xmlns',
+               'drake:effort', 'drake:x', 'xmlns:xacro')
 _NUMBERS = ('nan', 'inf', '-inf', '1e999', '-1e999', '1e308', '-1e308', '1e200', '1e100', '1e31',
             '1e30', '-1e30', '1e16', '1e-320', '1e-30', '-0', '0', '-1', '1_0', '0x1', '1,5', '+1',
             '1e', '.', '--1', '1e+', '\u0661', '\uff11', '\u00b2', '\u30001', '1\xa0', '\x851',

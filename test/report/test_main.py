@@ -77,7 +77,8 @@ def test_what_cannot_be_read_is_one_clear_error(robot, capsys, text, words):
 
 
 @pytest.mark.parametrize('options, words', [
-    (['--payload-link', 'nobody'], 'link: expected one of base, link1'),
+    (['--payload-link', 'nobody'],
+     "link: 'nobody' is not a link of the robot; expected one of base, link1"),
     (['--samples', '0'], 'samples: expected 1 to'), (['--seed', '-1'], 'seed: expected')])
 def test_wrong_values_say_what_was_expected(robot, capsys, options, words):
     assert main([robot(arm()), *options]) == 2

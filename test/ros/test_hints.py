@@ -91,7 +91,7 @@ def test_nothing_is_said_too_early_too_often_or_without_need(waiting, capfd):
 def test_without_a_description_two_ways_to_give_one(waiting, capfd):
     text = waiting.after(PATIENCE, capfd)
     assert 'no robot description on /robot_description for 5 s' in text
-    assert 'ros2 run robot_state_publisher robot_state_publisher --ros-args -p' in text
+    assert 'ros2 run robot_state_publisher robot_state_publisher my_arm.urdf' in text
     assert '-p robot_description_file:=my_arm.urdf' in text
 
 
@@ -113,6 +113,21 @@ def test_a_description_in_another_namespace_is_found(waiting, other, capfd):
     assert 'But /left/robot_description has it' in text
     assert '--ros-args -r __ns:=/left' in text
     assert '/right' not in text and '/up' not in text and 'semantic' not in text
+
+
+def test_a_namespace_is_taken_over_only_where_the_description_is_too(waiting, other, capfd):
+    # A broadcaster with use_local_topics has its states in a namespace of its own.
+    other.node.create_publisher(JointState, '/local_jsb/joint_states', qos_profile_sensor_data)
+    other.node.destroy_publisher(other.states)
+    graph = waiting.client.node
+    waiting.client.until(lambda: graph.count_publishers('/local_jsb/joint_states')
+                         and not graph.count_publishers('/joint_states'))
+    waiting.describe()
+    text = waiting.after(PATIENCE, capfd)
+    assert '--ros-args -r joint_states:=/local_jsb/joint_states' in text and '__ns' not in text
+    other.node.create_publisher(String, '/local_jsb/robot_description', LATCHED)
+    waiting.client.until(lambda: graph.count_publishers('/local_jsb/robot_description'))
+    assert '--ros-args -r __ns:=/local_jsb' in waiting.after(REPEAT_EVERY, capfd)
 
 
 def test_in_a_namespace_of_its_own_only_the_topic_is_remapped(other, capfd):
@@ -137,7 +152,7 @@ def test_without_joint_states_the_broadcaster_is_started(waiting, capfd):
     waiting.describe()
     text = waiting.after(PATIENCE, capfd)
     assert f'no joint state on /joint_states for {ARM.joint_names[0]}, ' in text
-    assert 'Nobody publishes there.' in text and BROADCASTER in text
+    assert 'No node publishes there.' in text and BROADCASTER in text
 
 
 def test_joint_states_that_have_ended_are_said_to_have_ended(waiting, capfd):
@@ -146,8 +161,30 @@ def test_joint_states_that_have_ended_are_said_to_have_ended(waiting, capfd):
     with pytest.raises(RejectedStateError):
         waiting.feed(ARM.joint_names, [np.nan] * 8)
     text = waiting.after(PATIENCE + 1.0, capfd)
-    assert 'Nobody publishes there any more.' in text and BROADCASTER in text
+    assert 'No node publishes there any more.' in text and BROADCASTER in text
     assert 'There come' not in text and 'dropped' not in text
+
+
+def test_joint_states_that_have_ended_while_their_publisher_is_known(waiting, published, capfd):
+    waiting.describe()
+    for _ in range(3):
+        waiting.feed(ARM.joint_names)
+        assert waiting.after(1.0, capfd) == ''
+    while not (text := waiting.after(1.0, capfd)):
+        assert waiting.time < 20.0
+    assert f"Nothing comes any more; '{ARM.joint_names[0]}', " in text
+    assert 'ros2 control list_controllers' in text and 'There come' not in text
+
+
+def test_in_a_namespace_the_broadcaster_has_another_controller_manager(other, capfd):
+    waiting = Waiting('left')
+    try:
+        waiting.describe()
+        text = waiting.after(PATIENCE, capfd)
+    finally:
+        waiting.client.close()
+    assert ('ros2 control load_controller --controller-manager /left/controller_manager '
+            '--set-state active joint_state_broadcaster') in text
 
 
 def test_a_publisher_that_says_nothing_is_looked_at(waiting, published, capfd):

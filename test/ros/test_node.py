@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.msg import JointDynamics
+from dynamics_interfaces.srv import GetGravityTorque
 from dynamics_node import RobotModel
 from dynamics_node.ros.node import DynamicsNode
 import numpy as np
@@ -15,6 +16,7 @@ from rclpy.parameter import Parameter as RosParameter
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
+from support.processes import LATCHED
 from support.robots import ARM7, PENDULUM
 import yaml
 
@@ -140,6 +142,19 @@ def test_the_log_says_which_publisher_of_joint_states_cannot_be_heard(client, st
     assert code == 0
     assert 'no joint state on /joint_states for hinge' in output
     assert 'the quality of service of /test_client does not fit' in output
+
+
+def test_a_latched_joint_state_is_heard_where_the_parameters_ask_for_it(client, start):
+    latched = client.node.create_publisher(JointState, 'joint_states', LATCHED)
+    latched.publish(JointState(name=['hinge'], position=[0.5]))
+    start(robot_description_file=PENDULUM, state_timeout=10.0, **{
+        'qos_overrides./joint_states.subscription.durability': 'transient_local',
+        # Without it DDS sends nothing that was published before.
+        'qos_overrides./joint_states.subscription.reliability': 'reliable'})
+    answers: list = []
+    client.until(lambda: answers and answers[-1].success, lambda: answers.append(client.call(
+        GetGravityTorque, '/dynamics_node/get_gravity_torque')))
+    assert answers[-1].position[0] == 0.5
 
 
 def test_the_description_comes_from_the_topic_and_a_bad_one_is_survived(client, start):

@@ -67,7 +67,7 @@ def flat(tree, prefix=''):
 def test_the_parameter_file_has_every_parameter_with_its_default():
     text = (ROOT / 'config' / 'dynamics.yaml').read_text()
     [node] = yaml.safe_load(text).values()
-    # An empty list cannot be written in a parameter file, so those stand in comments.
+    # Those that are empty stand in comments, with an example.
     written = dict(flat(node['ros__parameters']))
     for parameter in PARAMETERS:
         if parameter.default == ():

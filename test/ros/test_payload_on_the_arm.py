@@ -114,7 +114,7 @@ def test_what_the_arm_cannot_hold_is_refused_while_output_is_on(floating):
     assert (answer.link, answer.inertia) == ('hand', TOOL)
     answer = carry(rig, 'hand', Inertia(m=1e308, com=Vector3(z=0.06)))
     assert not answer.success
-    assert 'payload.mass: expected a number >= 0 and <= 100000' in answer.message
+    assert 'inertia.m: expected a number >= 0 and <= 100000' in answer.message
     upwards = Vector3Stamped(vector=Vector3(z=9.81))
     answer = client.call(SetGravity, '/dynamics_node/set_gravity',
                          SetGravity.Request(gravity=upwards))

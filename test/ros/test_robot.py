@@ -42,6 +42,10 @@ def test_the_measured_position_is_refused_while_a_chosen_joint_is_not_fresh():
     robot.buffer.update(0.0, [chosen[0]], [0.25])
     with pytest.raises(StateUnavailableError, match=f'within 0.1 s for {chosen[1]}'):
         robot.measured_position(0.05, 0.1)
+    robot.state_publishers = 2
+    with pytest.raises(StateUnavailableError, match=(
+            r'; 2 nodes publish joint_states: if .* set allow_several_state_publishers')):
+        robot.measured_position(0.05, 0.1)
     robot.buffer.update(0.05, [chosen[1]], [0.5])
     q = robot.measured_position(0.05, 0.1)
     assert (q[2], q[0]) == (0.25, 0.5)

@@ -16,7 +16,8 @@ FILE = CONFIG / 'ros2_control_effort.yaml'
 @pytest.fixture(scope='module')
 def control():
     nodes = yaml.safe_load(FILE.read_text())
-    return {name: node['ros__parameters'] for name, node in nodes.items()}
+    assert all(name.startswith('/**/') for name in nodes)
+    return {name.removeprefix('/**/'): node['ros__parameters'] for name, node in nodes.items()}
 
 
 @pytest.fixture(scope='module')
@@ -53,12 +54,13 @@ def test_the_joint_states_come_often_enough(control, dynamics):
     assert control['joint_state_broadcaster'] == {'use_local_topics': False}
 
 
-def test_ros_reads_the_file(control):
+@pytest.mark.parametrize('namespace', ['', 'left', '/a/b'])
+def test_ros_reads_the_file_whatever_the_namespace(control, namespace):
     context = rclpy.Context()
     rclpy.init(args=['--ros-args', '--params-file', str(FILE)], context=context)
     try:
         for name, expected in control.items():
-            node = rclpy.create_node(name, context=context,
+            node = rclpy.create_node(name, context=context, namespace=namespace,
                                      automatically_declare_parameters_from_overrides=True)
             read = {key: node.get_parameter(key).value for key in flat(expected)}
             node.destroy_node()

@@ -102,11 +102,13 @@ def test_on_a_link_that_no_joint_moves_it_has_no_effect_and_it_says_so(shared):
 
 
 @pytest.mark.parametrize(('link', 'inertia', 'message'), [
-    ('nose', BOX, "link: expected one of base, shoulder.*; got 'nose'"),
+    ('nose', BOX, "^link: 'nose' is not a link of the robot; expected one of base, shoulder"),
     ('', BOX, 'link: expected the one that carries the payload, got none: one of base, '),
-    ('hand', Inertia(m=-1.0), 'payload.mass: expected a number >= 0 and <= 100000, got -1.0'),
-    ('hand', Inertia(m=np.nan), 'payload.mass: expected a number >= 0 and <= 100000, got nan'),
-    ('hand', Inertia(m=1.0, com=Vector3(x=np.inf)), 'payload.com: expected a finite number'),
+    ('hand', Inertia(m=-1.0), r'^inertia\.m: expected a number >= 0 and <= 100000, got -1.0$'),
+    ('hand', Inertia(m=np.nan), r'^inertia\.m: expected a number >= 0 and <= 100000, got nan$'),
+    ('hand', Inertia(m=1.0, com=Vector3(x=np.inf)), r'^inertia\.com: expected a number >= -1000 '),
+    ('hand', Inertia(m=1.0, com=Vector3(y=1e200)), r'^inertia\.com: expected .*got 1e\+200'),
+    ('hand', Inertia(m=1.0, ixy=np.nan), r'^inertia\.ixx to izz: expected a finite number, got '),
     ('hand', Inertia(m=1.0, ixx=0.1, iyy=0.1, izz=0.5), 'inertia is not physical: .*triangle')])
 def test_what_no_robot_can_carry_is_refused_and_the_last_one_stays(shared, link, inertia, message):
     assert set_payload(shared, 'hand', BOX).success
@@ -128,7 +130,8 @@ def test_the_parameters_set_one_by_one_say_the_same(shared):
     refused = put('payload.mass', type=3, double_value=1.5)
     assert not refused.successful
     assert 'payload.link: expected the link' in refused.reason
-    assert 'expected one of' in put('payload.link', type=4, string_value='nose').reason
+    reason = put('payload.link', type=4, string_value='nose').reason
+    assert "payload.link: 'nose' is not a link" in reason
     assert put('payload.link', type=4, string_value='hand').successful
     assert put('payload.mass', type=3, double_value=1.5).successful
     expected = ARM.with_payload('hand', 1.5).gravity_torque(Q)
@@ -199,7 +202,8 @@ def test_a_payload_follows_gravity_whatever_the_mounting(shared):
     ((0.0, 0.0, 0.0), '', 'expected a vector that points to the earth, got zero'),
     ((0.0, 0.0, np.nan), '', 'gravity: expected finite numbers'),
     ((0.0, 0.0, -30.0), '', 'gravity: expected a number >= -20'),
-    ((0.0, 0.0, -9.81), 'map', "header.frame_id: link: expected one of base, .*; got 'map'"),
+    ((0.0, 0.0, -9.81), 'map',
+     "^header.frame_id: 'map' is not a link of the robot; expected one of base, "),
     ((0.0, 0.0, -9.81), 'elbow', 'how elbow is turned is not known: no joint state within 1 s')])
 def test_a_gravity_that_cannot_be_is_refused(shared, vector, frame, message):
     shared.during(1.1)  # what another test has published becomes too old
@@ -237,7 +241,8 @@ def test_all_of_it_from_the_start_by_parameters(client, start):
 
 @pytest.mark.parametrize(('parameters', 'message'), [
     ({'payload.mass': 1.0}, 'payload.link: expected the link that carries payload.mass'),
-    ({'payload.mass': 1.0, 'payload.link': 'nose'}, "expected one of base, .*; got 'nose'"),
+    ({'payload.mass': 1.0, 'payload.link': 'nose'},
+     "payload.link: 'nose' is not a link of the robot; expected one of base"),
     ({'payload.mass': 1.0, 'payload.link': 'hand',
       'payload.inertia': '[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]'}, 'inertia is not physical'),
     ({'rotor_inertia': '[0.1]'}, 'rotor_inertia: expected 8 numbers for shoulder_yaw'),

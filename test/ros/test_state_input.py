@@ -9,6 +9,7 @@ from dynamics_node.ros.state_input import StateInput, WARN_EVERY
 from dynamics_node.safety import EffortLimiter, OutputSettings, TorquePath
 import numpy as np
 import pytest
+from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from support.processes import Client
 from support.robots import PENDULUM
@@ -20,8 +21,10 @@ LIMITED = PENDULUM.read_text().replace('type="continuous"', 'type="revolute"').r
 class Receiver:
     """A node with nothing but the input, in this process."""
 
-    def __init__(self, raw):
-        self.client = Client('receiver')
+    def __init__(self, raw, **overrides):
+        self.client = Client('receiver', parameter_overrides=[
+            Parameter(f'qos_overrides./joint_states.subscription.{name}', value=value)
+            for name, value in overrides.items()])
         self.robot = Robot(RobotModel.from_urdf(LIMITED), ())
         # A busy machine may take its time from one process to the other.
         settings = OutputSettings(5.0, 0.0, 0.0, 'ramp_to_zero')
@@ -157,3 +160,56 @@ def test_an_arm_that_rests_beyond_its_limit_does_not_fill_the_log(client, receiv
     client.during(1.5 * WARN_EVERY, lambda: client.publish(['hinge'], [1.25]))
     receiver.spin()
     assert sum('beyond the position limits' in text for text in receiver.warnings) == 1
+
+
+def test_two_publishers_share_a_queue_in_which_no_state_takes_the_place_of_another(client,
+                                                                                  receiver):
+    gripper = Client('gripper')
+    rounds, heard = iter(range(10**6)), receiver.robot.buffer
+
+    def together():
+        position = next(rounds) % 1000 * 1e-3
+        client.publish(['hinge'], [position])
+        gripper.publish(['finger'], [0.0])
+        gripper.publish(['finger'], [0.0])
+        return position
+    try:
+        # Discovered both, and the new subscription by both.
+        client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 2)
+        client.until(lambda: heard.newest_names == ('hinge',), lambda: (at(client, 0.0)(),
+                                                                        receiver.spin()))
+        client.until(lambda: heard.newest_names == ('finger',),
+                     lambda: (gripper.publish(['finger'], [0.0]), receiver.spin()))
+        client.during(0.05, receiver.spin)
+        for _ in range(20):
+            accepted, position = heard.accepted, together()
+            client.until(lambda: heard.accepted == accepted + 3, receiver.spin)  # noqa: B023
+            assert heard.position[0] == position
+        # It is there only as long as the second one is, and never changed while efforts are sent.
+        receiver.channel.machine = SimpleNamespace(is_on=True)
+    finally:
+        gripper.close()
+    subscription = receiver.input.subscription
+    client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 1)
+    assert receiver.input.subscription is subscription
+    receiver.channel.machine.is_on = False
+    receiver.input.adapt_queue()
+    assert receiver.input.subscription is not subscription
+    until_received(client, receiver, 0.0)
+    at(client, *(0.001 * i for i in range(9)))()
+    client.during(0.02)
+    client.until(lambda: receiver.received and receiver.received[-1][0] == [0.008],
+                 receiver.spin)
+    assert len(receiver.received) == 1
+
+
+def test_a_depth_that_was_asked_for_is_left_alone(client):
+    receiver = Receiver(raw=False, depth=3)
+    gripper = Client('gripper')
+    try:
+        subscription = receiver.input.subscription
+        client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 2)
+        assert receiver.input.subscription is subscription
+    finally:
+        gripper.close()
+        receiver.client.close()

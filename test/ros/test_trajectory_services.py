@@ -68,7 +68,7 @@ def test_every_point_gets_its_effort_and_stays_what_it_was(shared):
                          for state in zip(q, qd, qdd, strict=True)])[:, order]
     np.testing.assert_allclose(efforts(answer), expected, rtol=0,
                                atol=1e-11 * np.abs(expected).max())
-    assert answer.message == 'all velocities and accelerations were given'
+    assert answer.message.split(';')[0] == 'all velocities and accelerations were given'
     assert answer.trajectory.joint_names == names
     for before, after in zip(sent.points, answer.trajectory.points, strict=True):
         after.effort = before.effort
@@ -100,7 +100,7 @@ def test_gravity_and_friction_are_switched_by_the_request(shared):
                                                                 without_gravity=True))
     assert difference == pytest.approx(ARM.gravity_torque(q), abs=1e-11)
     answer = ask(shared, trajectory, with_friction=True)
-    assert answer.message == 'with friction'
+    assert answer.message.split(';')[0] == 'with friction'
     difference = efforts(answer) - efforts(ask(shared, trajectory))
     assert difference == pytest.approx(ARM.friction_torque(qd), abs=1e-11)
 
@@ -116,8 +116,47 @@ def test_points_and_joints_above_their_limit_are_named(shared):
     assert not answer.within_limits
     assert list(answer.points_over_limit) == [2]
     assert answer.joints_over_limit == [ARM.joint_names[i] for i in np.flatnonzero(over[2])]
-    assert 'points above the effort limit of shoulder_pitch' in answer.message
+    assert '1 point above the effort limit of shoulder_pitch' in answer.message
     np.testing.assert_allclose(answer.peak_effort, np.abs(tau).max(axis=0), rtol=1e-12)
+
+
+def test_a_joint_that_stands_still_is_judged_as_well(shared):
+    names, moved = ('elbow_pitch', 'shoulder_yaw'), [ARM.joint_names.index('elbow_pitch'),
+                                                     ARM.joint_names.index('shoulder_yaw')]
+    q, qd, qdd = np.zeros((3, 2, 2))
+    qdd[1, 0] = 100.0
+    sent = message([0.0, 1.0], q, qd, qdd, names)
+    answer = ask(shared, sent)
+    whole = np.zeros((3, 2, N))
+    whole[0] = ARM.neutral_position
+    for values, given in zip(whole, (q, qd, qdd), strict=True):
+        values[:, moved] = given
+    tau, limits = np.abs(ARM.inverse_dynamics(*whole)), ARM.effort_limits
+    pitch = ARM.joint_names.index('shoulder_pitch')
+    # The moved joints are within their limits, and the one that carries them is not.
+    assert (tau[:, moved] <= limits[moved]).all() and tau[1, pitch] > limits[pitch]
+    assert efforts(answer).shape == (2, 2)
+    assert not answer.within_limits
+    assert list(answer.points_over_limit) == [1]
+    assert answer.joints_over_limit == ['shoulder_pitch']
+    assert len(answer.peak_effort) == len(answer.effort_limits) == 2
+    assert ('1 point above the effort limit of shoulder_pitch (not in the trajectory: up to '
+            f'{tau[1, pitch]:.6g} of {limits[pitch]:.6g})') in answer.message
+    answer = largest(shared, trajectory=sent, link='hand')
+    assert (answer.mass, answer.limiting_joint) == (0.0, 'shoulder_pitch')
+    assert ('shoulder_pitch is not in joint_names: it needs '
+            f'{ARM.inverse_dynamics(*whole)[1, pitch]:.6g} of {limits[pitch]:.6g}'
+            ) in answer.message
+
+
+def test_positions_of_a_trajectory_beyond_their_limits_are_named(shared):
+    q = np.zeros((3, N))
+    q[:, -1] = 0.01, 5.0, 2.0
+    lower, upper = ARM.position_limits[-1]
+    answer = ask(shared, message([0.0, 1.0, 2.0], q, 0 * q, 0 * q))
+    assert answer.success
+    assert (f'; beyond the position limits: {ARM.joint_names[-1]} at 5 (limits {lower:g} to '
+            f'{upper:g})') in answer.message
 
 
 def test_some_joints_move_the_others_stand_where_they_are(client, start):
@@ -131,9 +170,8 @@ def test_some_joints_move_the_others_stand_where_they_are(client, start):
     whole[:, [2, 1]], rates[:, [2, 1]], changes[:, [2, 1]] = q, qd, qdd
     expected = ARM.inverse_dynamics(whole, rates, changes)[:, [2, 1]]
     np.testing.assert_allclose(efforts(answer), expected, rtol=0, atol=1e-12)
-    assert answer.message.endswith(
-        'taken where last measured, or neutral if never: '
-        + ', '.join(ARM.joint_names[i] for i in (0, 3, 4, 5, 6, 7)))
+    assert ('; taken where last measured, or neutral if never: '
+            + ', '.join(ARM.joint_names[i] for i in (0, 3, 4, 5, 6, 7))) in answer.message
     # No names: the chosen joints.
     q4, qd4, qdd4 = (values[:, :4] for values in motion(time))
     answer = ask(client, message(time, q4, qd4, qdd4, names=[]))
@@ -157,8 +195,11 @@ def test_what_is_no_trajectory_is_refused_in_words(shared):
              (backwards, 'time: point 2: expected more than 1.0 s'),
              (short, r'trajectory.points[1].velocities: expected 8 numbers for'),
              (without, r'trajectory.points[2].positions: expected 8 numbers'),
-             (message(time, nan, qd, qdd), 'trajectory.points[1].positions: expected finite'),
+             (message(time, nan, qd, qdd), 'trajectory.points[1].positions: expected finite '
+              f'numbers, or none; got nan for {ARM.joint_names[2]}'),
              (no_rates, 'trajectory.points[1].velocities: expected finite numbers, or none; got'),
+             (message(time, q, names=[*ARM.joint_names[:-1], 'elbow_pich']),
+              "'elbow_pich' is not a joint that can be moved, is 'elbow_pitch' meant?"),
              (message(time, q, qd, nan), 'trajectory.points[1].accelerations: expected finite'),
              (message(time, q[:, :1], names=['\x1b[2J']), r"'\x1b[2J' is not a joint"),
              (message(time, q[:, :1], names=['nose']), "'nose' is not a joint"),

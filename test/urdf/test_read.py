@@ -286,9 +286,48 @@ def test_what_was_forgotten_to_expand_is_refused():
                          '<xacro:include filename="a"/><link name="a"/></robot>')
     assert 'contains xacro elements: expand it first' in problem
     [problem] = problems('<robot name="r"><xacro:include filename="a"/><link name="a"/></robot>')
-    assert 'unbound prefix' in problem
+    assert 'contains xacro elements: expand it first' in problem
+    [problem] = problems('<robot name="r" xmlns:x="http://www.ros.org/wiki/xacro">'
+                         '<link name="a"><x:if value="1"/></link></robot>')
+    assert 'contains xacro elements: expand it first' in problem
     [problem] = problems(two_links('<axis xyz="0 0 1"/><limit effort="${e}" velocity="1"/>'))
-    assert problem == "joint 'j': <limit> effort: expected a number, got '${e}'"
+    assert problem == ("joint 'j': <limit> effort: expected a number, got '${e}'; a xacro file "
+                       'must be expanded first')
+    [problem] = problems(two_links('<axis xyz="0 $(arg y) 1"/>'))
+    assert problem.endswith("got '0 $(arg y) 1'; a xacro file must be expanded first")
+
+
+@pytest.mark.parametrize('attribute', ['drake:acceleration="2.5"', 'a:b:c="${x}"', ':="1"',
+                                       'drake:effort="nan" drake:lower="9"', 'xmlns:xacro="x"',
+                                       'xml:effort="7"'])
+@pytest.mark.parametrize('element', ['', '<drake:collision_filter_group name="g"><drake:member '
+                                     'link="a"/></drake:collision_filter_group>',
+                                     '<drake:link name="a"/><drake:joint/>', '<:/>'])
+def test_prefixes_that_nothing_declares_are_left_out_as_urdfdom_does(attribute, element):
+    limit = '<limit lower="-1" upper="2" effort="30" velocity="2"/>'
+    plain = two_links('<axis xyz="0 0 1"/>' + limit)
+    text = plain.replace('<limit', f'<limit {attribute}').replace('</robot>', f'{element}</robot>')
+    assert text.count(attribute) == 1
+    read, expected = read_urdf(text), read_urdf(plain)
+    assert [link.name for link in read.links] == [link.name for link in expected.links]
+    [joint] = read.joints
+    assert (joint.lower, joint.upper, joint.effort, joint.velocity) == (-1.0, 2.0, 30.0, 2.0)
+    assert read.warnings == expected.warnings
+
+
+def test_a_default_name_space_does_not_hide_the_robot():
+    text = two_links('<axis xyz="0 0 1"/>').replace('<robot', '<robot xmlns="http://a/b"')
+    assert len(read_urdf(text).joints) == 1
+
+
+@pytest.mark.parametrize('text', [
+    '<robot name="r"><a:b></b:a><link name="a"/></robot>', '<robot name="r" a:b="1" a:b="2"/>',
+    '<robot name="r"><link name="a" drake:x=1/></robot>', '<a:robot name="r"/>',
+    '<robot name="r"><link name="a"/><a:b>' + '<c:d>' * 40 + '</c:d>' * 40 + '</a:b></robot>',
+    '<robot name="r"><link name="a" b:c="&d;"/></robot>',
+    '<!DOCTYPE r [<!ATTLIST link a:b CDATA "1">]><robot name="r"><link name="a"/></robot>'])
+def test_what_is_no_xml_or_too_deep_is_refused_with_prefixes_too(text):
+    assert len(problems(text)) == 1
 
 
 def test_an_axis_too_long_to_normalise_is_refused():

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import itertools
 import math
 from xml.etree import ElementTree as ET
+from xml.parsers import expat
 
 ONE_DEGREE_OF_FREEDOM = ('revolute', 'continuous', 'prismatic')
 
@@ -53,10 +54,15 @@ class MovableJoint:
 
 def parse(text: str) -> ET.Element:
     """Return the <robot> element of a URDF text."""
+    # Without name spaces, as MuJoCo reads it: URDFs use prefixes that nothing declares.
+    builder = ET.TreeBuilder()
+    parser = expat.ParserCreate(encoding='utf-8')
+    parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
     try:
-        root = ET.fromstring(text.strip())
-    except ET.ParseError as error:
+        parser.Parse(text.strip().encode(errors='surrogatepass'), True)
+    except expat.ExpatError as error:
         raise RobotRefusedError(f'the robot description is not XML: {error}') from error
+    root = builder.close()
     if root.tag != 'robot':
         raise RobotRefusedError(f'expected a URDF with <robot> at its top, got <{root.tag}>')
     return root

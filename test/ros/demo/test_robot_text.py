@@ -18,6 +18,14 @@ def joint(name, kind='revolute', inner=''):
             f'{inner}</joint>')
 
 
+def test_prefixes_that_nothing_declares_do_no_harm():
+    """Public URDFs have them."""
+    text = robot(joint('z', inner='<limit drake:acceleration="2.5" effort="3"/>'), '<drake:x/>')
+    [only] = movable_joints(text)
+    assert only.effort == 3.0
+    assert 'drake:acceleration="2.5"' in mujoco_text(text)
+
+
 def test_joints_come_in_the_order_of_the_document():
     """Fixed ones are left out."""
     text = robot(joint('z'), joint('f', 'fixed'), joint('a', 'continuous'),

@@ -1,4 +1,4 @@
-"""Which link carries a payload if nobody says it."""
+"""The link at the end of an arm, which requests mean that name none."""
 
 import re
 
@@ -17,7 +17,7 @@ _TOOLS = (re.compile(r'tcp|tool_?cent', re.IGNORECASE), re.compile(r'tool', re.I
           re.compile(r'hand|gripper|palm|eef|effector|(^|_)ee($|_)|flange', re.IGNORECASE))
 
 
-def default_payload_link(tree, description):
+def tip_link(tree, description):
     """
     Return the link at the end of the arm: the last one before the fingers of a hand.
 

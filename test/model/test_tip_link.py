@@ -1,9 +1,8 @@
-"""Which link carries a payload if nobody says it."""
+"""The link at the end of an arm."""
 
 from xml.etree import ElementTree
 
 from dynamics_node.model import build_tree
-from dynamics_node.report.payload_link import default_payload_link
 from dynamics_node.urdf import read_urdf
 import pytest
 from support.arms import arm, pendulum
@@ -12,8 +11,7 @@ from support.robots import ARM7, public_robot
 
 def end_of(source):
     """Return the link that carries a payload."""
-    description = read_urdf(source)
-    return default_payload_link(build_tree(description), description)
+    return build_tree(read_urdf(source)).tip_link
 
 
 @pytest.mark.parametrize('robot, link', [
