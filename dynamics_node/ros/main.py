@@ -1,12 +1,14 @@
 """The executable `dynamics_node`: start, spin, and leave the arm in a defined state."""
 
 import gc
+import os
 import sys
 import threading
 import time
 import traceback
 
 from .signals import Signals
+from .unblocked_output import UnblockedOutput
 
 # Time that a stop may take after the first signal and after the second, s; launch kills after 5.
 STOP_WITHIN = 2.5
@@ -39,6 +41,18 @@ def main(args=None):
     """
     # First of all, and rclpy after it: importing takes seconds, and Ctrl-C may come then.
     signals = Signals()
+    if os.isatty(2):
+        os.environ.setdefault('RCUTILS_COLORIZED_OUTPUT', '1')
+    # A terminal that is paused, or a pipe that is not read, must not hold up the arm.
+    outputs = [UnblockedOutput(descriptor) for descriptor in (1, 2)]
+    try:
+        return _run(args, signals)
+    finally:
+        for output in outputs:
+            output.close()
+
+
+def _run(args, signals):
     gc.disable()  # until everything is loaded: importing makes much and drops nothing
     import rclpy
     import rclpy.logging

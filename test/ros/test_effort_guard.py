@@ -8,9 +8,9 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.msg import OutputState
-from dynamics_node.ros.effort_guard.main import EndingSignals, ONE_SIGNAL
 from dynamics_node.ros.effort_guard.parameters import check_all
 from dynamics_node.ros.parameter import ParameterError
+from dynamics_node.ros.signals import SAME_SIGNAL
 from dynamics_node.safety.effort_guard import LONGEST_STEP
 import numpy as np
 import pytest
@@ -199,7 +199,7 @@ def test_a_second_signal_is_faster(bench, start):
     bench.start()
     guard.send(signal.SIGTERM)
     bench.until(bench.is_in('STOPPING'), bench.send)
-    bench.during(ONE_SIGNAL + 0.1, bench.send)
+    bench.during(SAME_SIGNAL + 0.1, bench.send)
     assert bench.last[0] > 10.0
     bench.received.clear()
     guard.send(signal.SIGINT)
@@ -210,17 +210,6 @@ def test_a_second_signal_is_faster(bench, start):
     assert max(steps) > 1.2 * 20.0 * LONGEST_STEP / 2.5  # the first signal allows 2.5 s
     assert guard.wait()[0] == 0
 
-
-def test_signals_that_come_together_are_one():
-    now = [100.0]
-    signals = EndingSignals(lambda: now[0])
-    signals.received(signal.SIGINT, None)
-    now[0] += 0.9 * ONE_SIGNAL
-    signals.received(signal.SIGTERM, None)
-    assert (signals.count, signals.name) == (1, 'SIGTERM')
-    now[0] += 0.2 * ONE_SIGNAL
-    signals.received(signal.SIGINT, None)
-    assert signals.count == 2
 
 
 def test_at_rest_it_ends_at_once(bench, guard):
@@ -400,7 +389,7 @@ def test_it_needs_nothing_of_the_library():
 
 def test_a_log_that_is_not_read_does_not_block_it():
     code = ('import os, sys\n'
-            'from dynamics_node.ros.effort_guard.unblocked_output import UnblockedOutput\n'
+            'from dynamics_node.ros.unblocked_output import UnblockedOutput\n'
             'output = UnblockedOutput(2)\n'
             'for i in range(3000):\n'
             '    try:\n'
@@ -420,7 +409,7 @@ def test_a_log_that_is_not_read_does_not_block_it():
 
 def test_what_is_logged_arrives():
     code = ('import os\n'
-            'from dynamics_node.ros.effort_guard.unblocked_output import UnblockedOutput\n'
+            'from dynamics_node.ros.unblocked_output import UnblockedOutput\n'
             'output = UnblockedOutput(2)\n'
             'os.write(2, b"first\\n")\n'
             'output.close()\n'

@@ -2,56 +2,20 @@
 
 import gc
 import os
-import signal
 import sys
 import time
 import traceback
 
-from .unblocked_output import UnblockedOutput
+from ..signals import Signals
+from ..unblocked_output import UnblockedOutput
 
 # Time that the fade may take after a signal, and after a second one, s; launch kills after 5.
 STOP_WITHIN = 2.5
 HURRY_WITHIN = 0.3
 # Then what is left ends at once, s.
 GIVE_UP_AFTER = 3.0
-# launch may send SIGINT twice within milliseconds: that is one, s.
-ONE_SIGNAL = 0.5
 # For the controller to acknowledge the last command, s.
 ACKNOWLEDGE_WITHIN = 0.5
-ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
-
-
-class EndingSignals:
-    """
-    Notes the signals that end the process; nothing is done in the handler.
-
-    Attributes
-    ----------
-    name : str
-        Of the newest signal; '' until one comes.
-    count : int
-        Signals so far; those within ONE_SIGNAL of the one before are one with it.
-
-    """
-
-    def __init__(self, clock=time.monotonic):
-        self.name = ''
-        self.count = 0
-        self._clock = clock
-        self._newest = float('-inf')
-
-    def take_over(self):
-        """Handle the signals from now on."""
-        for number in ENDING:
-            signal.signal(number, self.received)
-
-    def received(self, number, frame):
-        """Take a signal."""
-        now = self._clock()
-        if now - self._newest >= ONE_SIGNAL:
-            self.count += 1
-            self._newest = now
-        self.name = signal.Signals(number).name
 
 
 def main(args=None):
@@ -70,8 +34,7 @@ def main(args=None):
         could not start.
 
     """
-    signals = EndingSignals()
-    signals.take_over()
+    signals = Signals()
     if os.isatty(2):
         os.environ.setdefault('RCUTILS_COLORIZED_OUTPUT', '1')
     outputs = [UnblockedOutput(descriptor) for descriptor in (1, 2)]
@@ -105,9 +68,9 @@ def _spin(node, signals):
     from rclpy.executors import SingleThreadedExecutor
     executor = SingleThreadedExecutor()
     executor.add_node(node)
+    signals.call(node.create_guard_condition(lambda: None).trigger)
     gc.collect()
     gc.freeze()  # what the start has made stays, and is not looked through again
-    # The guard's own timer ends every wait within 0.05 s; Python runs its signal handlers then.
     while not signals.count:
         _spin_once(node, executor)
     is_left = not _bring_to_rest(node, executor, signals)
@@ -122,6 +85,7 @@ def _spin_once(node, executor):
     except Exception as error:
         # Not from our callbacks, which let nothing out, but rclpy has some of its own.
         node.logger.error(f'error in rclpy: {error}\n{traceback.format_exc()}')
+        time.sleep(0.01)  # one that keeps coming must not take the processor from the timer
 
 
 def _bring_to_rest(node, executor, signals):

@@ -3,7 +3,7 @@
 import os
 import threading
 
-# What a terminal or a pipe that nobody reads may hold up at the end, s.
+# Longest wait at the end for a terminal or a pipe that is not read, s.
 CLOSE_WITHIN = 0.5
 
 
@@ -12,7 +12,7 @@ class UnblockedOutput:
     Takes the place of a file descriptor; what it cannot pass on at once is dropped.
 
     A terminal that is paused by Ctrl-S, or a pipe whose reader has stopped, blocks the process in
-    its next log line, and a guard that is blocked guards nothing.
+    its next log line, and with it the arm.
 
     """
 
