@@ -7,7 +7,6 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.msg import OutputState
-from dynamics_node.ros.lean_executor import LeanExecutor
 import numpy as np
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
@@ -65,12 +64,7 @@ class ArmClient(Client):
 
         """
         super().__init__()
-        # It has to listen to a robot of 500 Hz and its commands, and must not publish states.
-        self.node.destroy_publisher(self.states)
-        self.executor.remove_node(self.node)
-        self.executor.shutdown()
-        self.executor = LeanExecutor(context=self.context)
-        self.executor.add_node(self.node)
+        self.node.destroy_publisher(self.states)  # it must not publish states
         self.epoch = time.time_ns()
         self.judge = CommandJudge(limits, rate_limits)
         self.truth, self.commands = deque(maxlen=REMEMBERED), deque(maxlen=REMEMBERED)

@@ -3,7 +3,7 @@
 import heapq
 import math
 
-OFF = ('READY', 'FAULT')
+OFF = ('READY', 'FAULT', 'HOLDING')
 # The writer stamps with the system's clock, which may run faster or slower than the steady one
 # that the node measures with: NTP turns it by at most so much.
 CLOCK_SLEW = 5e-4

@@ -70,6 +70,13 @@ def _killed(rig):
 
 
 @contextmanager
+def _node_stopped(rig):
+    rig.processes.send('node', signal.SIGSTOP)
+    yield
+    rig.processes.send('node', signal.SIGCONT)
+
+
+@contextmanager
 def _second_state_publisher(rig):
     rival = rig.client.node.create_publisher(JointState, 'joint_states', 1)
     yield
@@ -105,6 +112,9 @@ FAULTS = [
     Fault('line stopped briefly', _stopped, stops=False, longest=0.3, weight=2.0),
     Fault('line stopped', _stopped, stops=True, reason=STALE, longest=UNTIL_STALE),
     Fault('line killed', _killed, stops=True, reason=STALE, weight=0.3, breaks_books=True),
+    # Seen by the watchdog or by the next state, whichever comes first after the pause.
+    Fault('node stopped', _node_stopped, stops=True, reason=f', limit {STATE_TIMEOUT:.3f} s',
+          longest=UNTIL_STALE, breaks_books=True),
     Fault('second publisher of states', _second_state_publisher, stops=True,
           reason='publishers on', breaks_books=True),
     Fault('second source of efforts', _second_source_of_efforts, stops=True,

@@ -10,9 +10,9 @@ import math
 import signal
 import sys
 
-from dynamics_node.ros.lean_executor import LeanExecutor
 from rcl_interfaces.msg import SetParametersResult
 import rclpy
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from rclpy.serialization import deserialize_message
@@ -78,7 +78,7 @@ def main():
         signal.signal(number, lambda number, frame: stopped.append(number))
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
-        executor = LeanExecutor()
+        executor = SingleThreadedExecutor()
         executor.add_node(Relay())
         while not stopped:
             executor.spin_once(0.1)
