@@ -37,7 +37,7 @@ PARAMETERS = (
     Parameter('external_torque.gain', DOUBLE, 100.0, 'Of the momentum observer, 1/s: 95 % of a '
               'step are there after 3 / gain. Larger is faster and noisier', low=0.0,
               low_open=True, high=10_000.0),
-    Parameter('state_timeout', DOUBLE, 0.1, 'Largest age of a joint state, s, on the steady '
+    Parameter('state_timeout', DOUBLE, 0.2, 'Largest age of a joint state, s, on the steady '
               'clock', low=0.0, low_open=True, high=10.0),
     Parameter('allow_several_state_publishers', FLAG, False, 'Enable although joint_states has '
               'several publishers: where arm and gripper have a broadcaster each. No state of one '
