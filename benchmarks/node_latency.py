@@ -2,7 +2,7 @@
 What the node costs beyond a bare rclpy relay: latency, processor time, services, start.
 
     python -m benchmarks.node_latency
-    python -m benchmarks.node_latency --executor rclpy --no-raw-states
+    python -m benchmarks.node_latency --no-raw-states
 
 The node and the relay run in processes of their own, at the same time, and are fed in turn in
 short slices, so that whatever else the machine does hits both. All ratios are of what was

@@ -246,7 +246,8 @@ class EffortOutput:
         """
         if is_fault:
             self.machine.latch(reason)
-        if may_hold and self.settings.stop_behavior == 'hold' and self.machine.is_driving:
+        if (may_hold and self.settings.stop_behavior == 'hold' and self.machine.is_driving
+                and self.limiter.last.any()):
             self.machine.enter(OutputState.HOLDING, f'{reason} (stop_behavior hold: the last '
                                'efforts stay in force; ~/enable with false releases them)')
             return
