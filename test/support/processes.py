@@ -20,6 +20,10 @@ LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 PATIENCE = 60.0
 
 
+# Longest time for an answer before the request is sent again, s.
+ANSWER = 8.0
+
+
 class NodeProcess:
     """The executable `dynamics_node` with given parameters."""
 
@@ -125,9 +129,19 @@ class Client:
             self._clients[name] = self.node.create_client(kind, name)
         client = self._clients[name]
         self.until(client.service_is_ready, action, timeout)
-        future = client.call_async(request or kind.Request())
-        self.until(future.done, action, timeout)
-        return future.result()
+        end = time.monotonic() + timeout
+        while True:
+            future = client.call_async(request or kind.Request())
+            try:
+                self.until(future.done, action, min(ANSWER, timeout))
+            except AssertionError:
+                # A service is said to be ready a moment before both ends are matched, and what
+                # is sent in that moment is lost. Every request here may be sent twice.
+                client.remove_pending_request(future)
+                if time.monotonic() > end:
+                    raise
+                continue
+            return future.result()
 
     def until_heard(self, action):
         """Wait until the node receives the joint states that `action` publishes."""
