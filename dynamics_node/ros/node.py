@@ -162,8 +162,8 @@ class DynamicsNode(Node):
         robot = self._robot
         if robot is not None:
             self.path.configure(
-                output_settings(values), robot.compensation(values), _limiter(robot, values),
-                robot.motion_limits(values['velocity_limits']))
+                time.monotonic(), output_settings(values), robot.compensation(values),
+                _limiter(robot, values), robot.motion_limits(values['velocity_limits']))
         self.output.configured()
         self._external_torque.configure()
 

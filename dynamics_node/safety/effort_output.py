@@ -14,7 +14,7 @@ STOP_PERIOD = 0.01
 MAX_PERIODS = 3
 # A ramp advances by at most this time per command, and a step of a stop counts at most the
 # second: a process that stood still goes on where it was instead of skipping the ramp, s.
-MAX_RAMP_STEP = 0.05
+MAX_RAMP_STEP = 0.1
 MAX_STOP_STEP = 0.02
 # A stop without a ramp ends within this time whatever the rate limits say, s.
 ZERO_WITHIN = 1.0
@@ -50,15 +50,16 @@ class OutputSettings:
 
 
 class _Ramp:
-    """Progress from 0 to 1, counted in the time of the commands that were sent."""
+    """Progress from 0 to 1 in the time of a steady clock, without pauses of the process."""
 
-    def __init__(self, duration=0.0):
+    def __init__(self, now=0.0, duration=0.0):
         self.duration = duration
-        self._elapsed = 0.0
+        self._time, self._elapsed = now, 0.0
 
-    def advance(self, dt):
-        """Go on by the time since the last command, s, but not by a pause of the process."""
-        self._elapsed += min(max(dt, 0.0), MAX_RAMP_STEP)
+    def advance(self, now):
+        """Go on to a time, s; of a pause only MAX_RAMP_STEP counts."""
+        self._elapsed += min(max(now - self._time, 0.0), MAX_RAMP_STEP)
+        self._time = now
 
     @property
     def progress(self):
@@ -138,7 +139,7 @@ class EffortOutput:
         self.limiter.resume(start_from)
         self._start_from = self.limiter.last
         self._difference = np.zeros(len(self._start_from))
-        self._ramp, self._change = _Ramp(self.settings.start_ramp), _Ramp()
+        self._ramp, self._change = _Ramp(now, self.settings.start_ramp), _Ramp()
         self._last_time = now
         self._saturated_since = None
         self._effort = None
@@ -146,12 +147,14 @@ class EffortOutput:
             self.machine.fault = ''
         self.machine.enter(OutputState.STARTING, reason)
 
-    def blend(self, difference):
+    def blend(self, now, difference):
         """
         Let a change of model, gains or limits go out over the start ramp.
 
         Parameters
         ----------
+        now : float
+            s.
         difference : numpy.ndarray, shape (m,)
             Target before the change minus target after it, at the same state, N m or N. What is
             left of an earlier change is added, so that many small changes lag behind and never
@@ -159,7 +162,7 @@ class EffortOutput:
 
         """
         self._difference = self._remaining_difference() + difference
-        self._change = _Ramp(self.settings.start_ramp)
+        self._change = _Ramp(now, self.settings.start_ramp)
         self._effort = None  # of the model before
 
     def follow(self, now, effort, period):
@@ -290,8 +293,8 @@ class EffortOutput:
         if self._effort is None:
             return None
         dt = now - self._last_time
-        self._ramp.advance(dt)
-        self._change.advance(dt)
+        self._ramp.advance(now)
+        self._change.advance(now)
         try:
             target = self.limiter.target(self._effort)
             if self._ramp.progress != 1.0 or self._change.progress != 1.0:
@@ -321,7 +324,7 @@ class EffortOutput:
                 and self.limiter.is_negligible(self._remaining_difference()))
 
     def _begin_fade(self, now, ramp, longest):
-        self._ramp = _Ramp(ramp)
+        self._ramp = _Ramp(now, ramp)
         self._stop_from = self.limiter.last
         self._stop_within = min(max(ramp, ZERO_WITHIN), longest)
         if not self.machine.is_on:
@@ -332,7 +335,7 @@ class EffortOutput:
         if self._end_stop():
             return None
         dt = now - self._last_time
-        self._ramp.advance(dt)
+        self._ramp.advance(now)
         # However small the rate limits are, or have become, the stop keeps its bound.
         least = np.abs(self._stop_from) * (min(max(dt, 0.0), MAX_RAMP_STEP)
                                            / max(self._stop_within, STOP_PERIOD))

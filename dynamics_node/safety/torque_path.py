@@ -108,12 +108,14 @@ class TorquePath:
         self.is_usable = False
         self._arrivals.clear()
 
-    def configure(self, settings, compensation, limiter, motion_limits):
+    def configure(self, now, settings, compensation, limiter, motion_limits):
         """
         Take over model and parameters; while driving, a change goes out over the start ramp.
 
         Parameters
         ----------
+        now : float
+            s.
         settings : OutputSettings
         compensation : Compensation
         limiter : EffortLimiter
@@ -130,7 +132,7 @@ class TorquePath:
         if before is None or after is None or len(before) != len(after):
             return
         if (difference := before - after).any():
-            self.output.blend(difference)
+            self.output.blend(now, difference)
 
     def _target(self):
         # Where the newest state's effort would lead without ramps and rate limits.

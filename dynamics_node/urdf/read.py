@@ -126,6 +126,7 @@ def _tree(text):
     parser = expat.ParserCreate(encoding='utf-8')
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data  # the names of hardware plugins are text
     parser.Parse(text, True)
     return builder.close()
 

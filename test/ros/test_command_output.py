@@ -129,7 +129,7 @@ def test_parameters_set_without_end_do_not_put_the_watchdog_off(client):
     values = check_all({})
     output = CommandOutput(client.node, values, lambda: None)
     output.path.use(robot.buffer)
-    output.path.configure(output_settings(values), robot.compensation(values),
+    output.path.configure(time.monotonic(), output_settings(values), robot.compensation(values),
                           _limiter(robot, values), robot.motion_limits(()))
     robot.buffer.update(time.monotonic(), ['hinge'], [0.0])
     output.enable()

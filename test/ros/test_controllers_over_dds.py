@@ -92,7 +92,9 @@ def test_a_deactivated_controller_ends_the_output_and_the_next_start_begins_ther
     reason = client.outputs[-1].reason
     assert '/forward_effort_controller is' in reason
     assert 'the hardware may hold: hinge: 10.3005' in reason
-    # No command any more, and no word that nothing is in force.
+    # No command any more, and no word that nothing is in force. They are two topics: the last
+    # command may be heard a moment after the state.
+    client.during(0.3, controller.publish)
     client.commands.clear()
     client.during(0.5, controller.publish)
     assert client.commands == []

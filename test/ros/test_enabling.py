@@ -68,7 +68,7 @@ class Parts(SimpleNamespace):
         self.robot = Robot(model, joints)
         self.output.path.use(self.robot.buffer)
         self.output.path.configure(
-            OutputSettings(60.0, 1.0, 1.0, 'ramp_to_zero'),
+            time.monotonic(), OutputSettings(60.0, 1.0, 1.0, 'ramp_to_zero'),
             self.robot.compensation(self.parameters.values),
             _limiter(self.robot, self.parameters.values), self.robot.motion_limits(()))
 

@@ -25,7 +25,7 @@ class Output:
         self.path = TorquePath(settings)
         self.path.use(JointStateBuffer(('a',), ('a',), np.zeros(1)))
         model = SimpleNamespace(torques=lambda q, qd: (EFFORT, EFFORT))
-        self.path.configure(settings, model, EffortLimiter(
+        self.path.configure(time.monotonic(), settings, model, EffortLimiter(
             np.array([10.0]), np.array([1e6]), np.ones(1), ('a',)), MotionLimits.none(('a',)))
         self.sent = []
         self.is_broken = False

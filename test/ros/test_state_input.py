@@ -30,7 +30,7 @@ class Receiver:
         settings = OutputSettings(5.0, 0.0, 0.0, 'ramp_to_zero')
         self.path = TorquePath(settings)
         self.path.use(self.robot.buffer)
-        self.path.configure(settings, self.robot.compensation(check_all({})), EffortLimiter(
+        self.path.configure(0.0, settings, self.robot.compensation(check_all({})), EffortLimiter(
             np.ones(1), np.ones(1), np.ones(1), ('hinge',)), self.robot.motion_limits(()))
         self.received, self.errors, self.warnings = [], [], []
         node = self.client.node

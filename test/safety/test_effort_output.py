@@ -247,7 +247,7 @@ def test_limits_that_are_no_numbers_cannot_keep_a_stop_from_ending():
 
 def test_a_change_goes_out_over_the_start_ramp_while_the_arm_is_followed():
     bench = Bench().active()
-    bench.output.blend(TORQUE - 2.0 * TORQUE)  # a payload: from now on twice the torque
+    bench.output.blend(bench.now, TORQUE - 2.0 * TORQUE)  # a payload: from now on twice the torque
     begin = len(bench.sent)
     bench.follow(2.0 * TORQUE, seconds=0.25)
     np.testing.assert_allclose(bench.sent[-1], 1.5 * TORQUE, rtol=0.05)
@@ -263,7 +263,7 @@ def test_many_small_changes_never_add_up_to_a_step():
     total = 1.0
     for _ in range(100):
         total += 0.01
-        bench.output.blend(-0.01 * TORQUE)
+        bench.output.blend(bench.now, -0.01 * TORQUE)
         bench.follow(total * TORQUE)
     steps = np.abs(np.diff(np.array(bench.sent[-101:]), axis=0))
     assert (steps <= 0.0101 * np.abs(TORQUE)).all()
@@ -275,7 +275,7 @@ def test_many_small_changes_never_add_up_to_a_step():
 def test_a_change_during_the_start_takes_its_own_time():
     bench = Bench().start()
     bench.follow(seconds=0.45)
-    bench.output.blend(TORQUE - 2.0 * TORQUE)
+    bench.output.blend(bench.now, TORQUE - 2.0 * TORQUE)
     begin = len(bench.sent)
     bench.follow(2.0 * TORQUE, seconds=0.6)
     steps = np.abs(np.diff(np.array(bench.sent[begin - 1:]), axis=0))
@@ -287,7 +287,7 @@ def test_a_change_during_the_start_takes_its_own_time():
 def test_small_changes_without_end_do_not_put_active_off():
     bench = Bench().start()
     for _ in range(100):
-        bench.output.blend(np.full(2, 1e-4))
+        bench.output.blend(bench.now, np.full(2, 1e-4))
         bench.follow()
     assert bench.name == 'ACTIVE'
 

@@ -54,8 +54,8 @@ class Arm:
     def settings(behavior, timeout):
         return OutputSettings(timeout, 0.5, 1.0, behavior)
 
-    def configure(self, gain=1.0, limits=LIMITS):
-        self.path.configure(self.settings(self.behavior, self.timeout), Model(gain),
+    def configure(self, gain=1.0, limits=LIMITS, now=0.0):
+        self.path.configure(now, self.settings(self.behavior, self.timeout), Model(gain),
                             EffortLimiter(limits, self.rates, np.ones(2), NAMES), self.limits)
 
     def publish(self, now, command):
@@ -171,7 +171,7 @@ def test_hold_is_for_silence_alone():
 
 def test_saturation_is_not_held_either():
     arm, state = active(behavior='hold')
-    arm.configure(gain=10.0)
+    arm.configure(gain=10.0, now=1.0)
     arm.run(1.0, 4.0, state)
     assert arm.fault.startswith('effort above its limit for 2 s')
     assert arm.name == 'FAULT'
@@ -248,7 +248,7 @@ def test_a_search_or_a_watchdog_that_no_longer_runs_is_a_fault():
 def test_a_change_of_the_model_goes_out_over_the_start_ramp():
     arm, state = active()
     before = arm.sent[-1]
-    arm.configure(gain=0.0)  # compensate.gravity switched off
+    arm.configure(gain=0.0, now=1.0)  # compensate.gravity switched off
     arm.run(1.0, 0.25, state)
     np.testing.assert_allclose(arm.sent[-1], 0.5 * before, rtol=0.06)
     arm.run(1.25, 0.3, state)
@@ -258,7 +258,7 @@ def test_a_change_of_the_model_goes_out_over_the_start_ramp():
 
 def test_lower_limits_go_out_over_the_start_ramp():
     arm, state = active()
-    arm.configure(limits=np.array([1.0, 1.0]))
+    arm.configure(limits=np.array([1.0, 1.0]), now=1.0)
     arm.run(1.0, 0.25, state)
     assert 2.0 < arm.sent[-1][0] < 4.5
     arm.run(1.25, 0.3, state)
@@ -434,7 +434,7 @@ def test_whatever_comes_no_command_is_wrong_and_none_comes_while_off(behavior, e
         elif event == 'clock':
             offset += values[0]
         elif event == 'change':
-            arm.configure(values[0], values[1] * LIMITS)
+            arm.configure(values[0], values[1] * LIMITS, now)
         elif event == 'tick':
             command = arm.tick(now)
         elif event in ('state', 'good'):

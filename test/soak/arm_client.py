@@ -64,7 +64,9 @@ class ArmClient(Client):
 
         """
         super().__init__()
-        self.node.destroy_publisher(self.states)  # it must not publish states
+        # The simulated robot is the one that publishes these.
+        self.node.destroy_publisher(self.states)
+        self.node.destroy_publisher(self.description)
         self.epoch = time.time_ns()
         self.judge = CommandJudge(limits, rate_limits)
         self.truth, self.commands = deque(maxlen=REMEMBERED), deque(maxlen=REMEMBERED)
