@@ -186,13 +186,13 @@ def test_two_publishers_share_a_queue_in_which_no_state_takes_the_place_of_anoth
             client.until(lambda: heard.accepted == accepted + 3, receiver.spin)  # noqa: B023
             assert heard.position[0] == position
         # It is there only as long as the second one is, and never changed while efforts are sent.
-        receiver.channel.machine = SimpleNamespace(is_on=True)
+        receiver.input._path = SimpleNamespace(is_on=True)
     finally:
         gripper.close()
     subscription = receiver.input.subscription
     client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 1)
     assert receiver.input.subscription is subscription
-    receiver.channel.machine.is_on = False
+    receiver.input._path = receiver.path
     receiver.input.adapt_queue()
     assert receiver.input.subscription is not subscription
     until_received(client, receiver, 0.0)
