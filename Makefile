@@ -4,7 +4,7 @@ SHELL := bash
 .DEFAULT_GOAL := help
 .PHONY: help demo report test bench fuzz soak pictures lint build shell lock clean
 
-# ROBOT, VIEW and PYTHON reach the scripts through the environment.
+# ROBOT, VIEW, PYTHON and ROS (a release of ROS 2) reach the scripts through the environment.
 
 help: ## This list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
@@ -15,7 +15,7 @@ demo: ## A simulated arm held by the node; ROBOT=path.urdf: another robot, VIEW=
 report: ## What a URDF says, and what is wrong with it: ROBOT=path.urdf; ARGS='...': see ARGS=--help
 	@bash scripts/report.sh $(ARGS)
 
-test: ## All tests; ARGS='...': arguments of pytest
+test: ## All tests; ROS=kilted: those that need ROS 2, on Kilted; ARGS='...': arguments of pytest
 	@bash scripts/test.sh $(ARGS)
 
 bench: ## Speed beside other libraries, into docs/benchmarks.md; ARGS='...': see python -m benchmarks -h

@@ -3,4 +3,6 @@
 set -euo pipefail
 scripts=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bash "$scripts/setup.sh" demo
-echo 'Built: install/dynamics_node and install/dynamics_interfaces. Next: make demo, make test or make shell.'
+# shellcheck source=scripts/env.sh
+source "$scripts/env.sh"
+echo "Built: $install_base/dynamics_node and $install_base/dynamics_interfaces. Next: make demo, make test or make shell."

@@ -22,4 +22,4 @@ source "$scripts/env.sh"
 # shellcheck source=scripts/isolate.sh
 source "$scripts/isolate.sh"
 # Started by way of python: a path with spaces is legal there, not in an executable's first line.
-exec python "$dynamics_root/install/dynamics_node/lib/dynamics_node/demo" "${arguments[@]}"
+exec python "$dynamics_root/$install_base/dynamics_node/lib/dynamics_node/demo" "${arguments[@]}"

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Renew the pins: requirements/*.in (but bench.in, which has its own) ->
-# requirements/lock/*.txt, one per Python version.
+# requirements/lock/*.txt, one per Python version and release of ROS 2.
 #
 # All purposes are resolved together, so that the demo's and the tests' packages never change
 # the version of what runs on the robot. Python 3.12 has a second lock, without the wheels of
-# ROS 2 and with the limits of sourced-ros.txt, for Ubuntu 24.04's own ROS 2 Jazzy.
+# ROS 2 and with the limits of sourced-ros.txt, for Ubuntu 24.04's own ROS 2. The wheels of another
+# release than Jazzy have locks with its name, in which the other packages are those of Jazzy's.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-for part in messages find_python; do
+for part in messages release ros_mode find_python; do
     # shellcheck source=/dev/null
     source "scripts/lib/$part.sh"
 done
@@ -43,13 +44,13 @@ lock() {
     say "requirements/lock/$name.txt: $(wc -l <"requirements/lock/$name.txt") packages"
 }
 
-everything=()
 without_ros=()
 for file in requirements/*.in; do
-    # Has its own pins: its packages are large, and optional.
-    [[ $file != requirements/bench.in ]] || continue
-    everything+=(-r "$file")
-    [[ $file == requirements/ros.in ]] || without_ros+=(-r "$file")
+    case $file in
+        # Has its own pins: its packages are large, and optional.
+        requirements/bench.in | requirements/ros-*.in) ;;
+        *) without_ros+=(-r "$file") ;;
+    esac
 done
 
 # Look for all interpreters before the first of the long steps.
@@ -69,7 +70,13 @@ for minor in 10 11 12 13; do
     # Old versions of pip give up, or search for hours, where the newest finds a solution.
     "$venv/bin/python" -m pip install --quiet --upgrade pip >"$work/log" 2>&1 ||
         die "packages cannot be had from PyPI: check the network and pip's settings."
-    lock "python3.$minor" "$venv" "${everything[@]}"
+    lock "python3.$minor" "$venv" "${without_ros[@]}" -r requirements/ros-jazzy.in
+    grep -v '^ros-' "requirements/lock/python3.$minor.txt" >"$work/others"
+    for release in "${wheel_releases[@]}"; do
+        [[ $release != jazzy ]] || continue
+        lock "python3.$minor-$release" "$venv" "${without_ros[@]}" \
+            -r "requirements/ros-$release.in" -c "$work/others"
+    done
     if ((minor == 12)); then
         lock "python3.$minor-numpy1" "$venv" "${without_ros[@]}" \
             -r requirements/sourced-ros.txt

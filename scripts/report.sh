@@ -8,5 +8,5 @@ bash "$scripts/setup.sh" demo
 # shellcheck source=scripts/env.sh
 source "$scripts/env.sh"
 # Started by way of python: a path with spaces is legal there, not in an executable's first line.
-exec python "$dynamics_root/install/dynamics_node/lib/dynamics_node/report" \
+exec python "$dynamics_root/$install_base/dynamics_node/lib/dynamics_node/report" \
     "${ROBOT:-$dynamics_root/config/robots/arm7.urdf}" "$@"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Bring the environment up to date: .venv with all packages, and this checkout built by colcon.
+# Bring the environment up to date: a virtual environment with all
+# packages, and this checkout built by colcon. ROS=kilted makes those of another ROS 2 release.
 #
 #     scripts/setup.sh demo    what `make demo` needs
 #     scripts/setup.sh test    that, and what `make test` and `make lint` need
@@ -11,7 +12,7 @@ set -euo pipefail
 purpose=${1:?expected demo, test or bench}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 dynamics_root=$PWD
-for part in messages stamps progress ros_mode find_python preflight steps rivals; do
+for part in messages release stamps progress ros_mode find_python preflight steps rivals; do
     # shellcheck source=/dev/null
     source "scripts/lib/$part.sh"
 done

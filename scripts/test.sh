@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The tests: scripts/test.sh [arguments of pytest]. Without a path among them: all of test/.
+# The tests: scripts/test.sh [arguments of pytest]. Without a path among them: all of test/, or, if
+# ROS names another release of ROS 2 than Jazzy, those that need ROS 2.
 # Without any argument they run in several workers; their start does not pay for a part.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -20,7 +21,15 @@ for argument in "${arguments[@]}"; do
         has_path=yes
     fi
 done
-[[ $has_path ]] || arguments+=(test)
+if [[ ! $has_path ]]; then
+    if [[ ${ROS:-jazzy} == jazzy ]]; then
+        arguments+=(test)
+    else
+        # shellcheck source=scripts/lib/ros_tests.sh
+        source scripts/lib/ros_tests.sh
+        arguments+=("${ros_tests[@]}")
+    fi
+fi
 
 mkdir -p log
 rm -f log/test_exit_code

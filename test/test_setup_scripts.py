@@ -3,6 +3,7 @@ The scripts of the set-up: their decisions, pins and messages, without the long 
 
 """
 
+import os
 import pathlib
 import re
 import shutil
@@ -19,10 +20,11 @@ BENCH = ROOT / 'requirements' / 'bench.in'
 INPUTS = sorted(set((ROOT / 'requirements').glob('*.in')) - {BENCH})
 LOCKS = sorted((ROOT / 'requirements' / 'lock').glob('*.txt'))
 LOCKS_WITH_ROS = [path for path in LOCKS if 'numpy1' not in path.name]
+PYTHONS = ('python3.10', 'python3.11', 'python3.12', 'python3.13')
 PREAMBLE = """
 set -euo pipefail
 cd "$1"
-for part in messages stamps progress ros_mode find_python preflight steps rivals; do
+for part in messages release stamps progress ros_mode find_python preflight steps rivals; do
     source "scripts/lib/$part.sh"
 done
 """
@@ -37,6 +39,16 @@ def run_bash(code, folder=ROOT, **environment):
     return subprocess.run(
         [shutil.which('bash'), '-c', PREAMBLE + code, 'bash', str(folder)],
         check=False, env=environment, capture_output=True, text=True, timeout=60)
+
+
+def rclpy_paths():
+    """
+    Return the part of this environment in which a Python finds rclpy.
+
+    """
+    return {name: value for name, value in os.environ.items()
+            if name in ('AMENT_PREFIX_PATH', 'PYTHONPATH', 'LD_LIBRARY_PATH')
+            or name.startswith('_ROS_WHEELS')}
 
 
 def assert_one_sentence(result, *parts):
@@ -78,6 +90,16 @@ def names_in(path):
     return [re.sub('[-_.]+', '-', name).lower() for name in names]
 
 
+def release_of(lock):
+    """
+    Return the release of ROS 2 whose wheels a lock pins; None for a sourced ROS 2.
+
+    """
+    if lock not in LOCKS_WITH_ROS:
+        return None
+    return lock.stem.partition('-')[2] or 'jazzy'
+
+
 def pins_in(path):
     return dict(line.split('==') for line in path.read_text().splitlines())
 
@@ -97,15 +119,23 @@ def test_a_lock_holds_pins_and_nothing_else(lock):
 
 def test_there_is_a_lock_for_every_supported_python():
     assert {path.stem for path in LOCKS} == {
-        'python3.10', 'python3.11', 'python3.12', 'python3.12-numpy1', 'python3.13'}
+        *PYTHONS, 'python3.12-numpy1', *(f'{python}-kilted' for python in PYTHONS)}
 
 
 @pytest.mark.parametrize('lock', LOCKS, ids=lambda path: path.stem)
 @pytest.mark.parametrize('inputs', INPUTS, ids=lambda path: path.stem)
 def test_a_lock_pins_every_package_that_is_asked_for(lock, inputs):
-    if inputs.stem == 'ros' and lock not in LOCKS_WITH_ROS:
-        pytest.skip('this lock stands on a sourced ROS 2')
+    if inputs.stem.startswith('ros-') and inputs.stem != f'ros-{release_of(lock)}':
+        pytest.skip('this lock is for another ROS 2')
     assert set(names_in(inputs)) <= set(pins_in(lock))
+
+
+@pytest.mark.parametrize('python', PYTHONS)
+def test_the_libraries_are_the_same_on_every_release(python):
+    jazzy, kilted = (
+        {name: version for name, version in pins_in(lock).items() if not name.startswith('ros-')}
+        for lock in LOCKS if lock.stem in (python, f'{python}-kilted'))
+    assert jazzy == kilted
 
 
 def test_what_is_measured_beside_is_pinned_where_it_is_named():
@@ -130,7 +160,7 @@ def test_only_the_benchmarks_install_what_is_measured_beside(tmp_path):
 
 
 @pytest.mark.parametrize('lock', LOCKS, ids=lambda path: path.stem)
-def test_a_lock_keeps_what_jazzy_can_work_with(lock):
+def test_a_lock_keeps_what_ros_can_work_with(lock):
     pins = pins_in(lock)
     assert int(pins['setuptools'].split('.')[0]) < 80
     assert pins['empy'] == '3.3.4'
@@ -192,15 +222,58 @@ def test_a_sourced_jazzy_is_found_by_its_rclpy(tmp_path):
     assert result.stdout == f'sourced {tmp_path}/opt\n'
 
 
-def test_another_distribution_of_ros_is_refused():
+@pytest.mark.parametrize('release', ['jazzy', 'kilted', 'lyrical', 'rolling'])
+def test_every_sourced_release_has_an_environment_of_its_own(release, tmp_path):
+    marker = tmp_path / 'share' / 'ament_index' / 'resource_index' / 'packages' / 'rclpy'
+    marker.parent.mkdir(parents=True)
+    marker.touch()
+    result = run_bash('ros_mode; echo "$venv $build_base $install_base"', ROS_DISTRO=release,
+                      AMENT_PREFIX_PATH=str(tmp_path))
+    end = '' if release == 'jazzy' else f'-{release}'
+    assert result.stdout.splitlines() == [
+        f'sourced {tmp_path}', f'.venv{end} build{end} install{end}'], result.stderr
+
+
+def test_the_wheels_of_kilted_have_an_environment_of_their_own():
+    result = run_bash('ros_mode; echo "$venv $build_base $install_base"', ROS='kilted')
+    assert result.stdout.split() == ['wheels', '.venv-kilted', 'build-kilted', 'install-kilted']
+
+
+def test_the_wheels_of_a_release_are_those_that_are_asked_for():
+    result = run_bash('mode=$(ros_mode); requirement_files test; lock_of 3.12', ROS='kilted')
+    names = [pathlib.Path(path).stem for path in result.stdout.split()]
+    assert names == ['build', 'runtime', 'demo', 'ros-kilted', 'test', 'python3.12-kilted']
+
+
+def test_another_release_of_ros_is_refused():
     assert_one_sentence(run_bash('ros_mode', ROS_DISTRO='humble'),
-                        'expected ROS 2 jazzy', 'ROS_DISTRO=humble')
+                        'jazzy kilted lyrical rolling', 'ROS_DISTRO=humble')
+    assert_one_sentence(run_bash('ros_mode', ROS='humble'), 'jazzy kilted', 'ROS=humble')
 
 
-def test_a_sourced_jazzy_without_rclpy_is_refused(tmp_path, tools):
+def test_a_release_without_wheels_has_to_be_sourced():
+    assert_one_sentence(run_bash('ros_mode', ROS='lyrical'), 'ROS=lyrical',
+                        'install ROS 2 lyrical, source its setup.bash')
+
+
+def test_another_release_than_the_sourced_one_is_refused():
+    assert_one_sentence(run_bash('ros_mode', ROS_DISTRO='jazzy', ROS='kilted'),
+                        'expected ROS=jazzy', 'got ROS=kilted')
+
+
+def test_a_sourced_ros_without_rclpy_is_refused(tmp_path, tools):
     result = run_bash('first_good_python() { good_python=; rejected=; }; find_ros_python',
-                      PATH=str(tools), HOME=str(tmp_path), ROS_DISTRO='jazzy')
-    assert_one_sentence(result, 'ROS_DISTRO=jazzy', 'imports rclpy', 'ros-jazzy-ros-base')
+                      PATH=str(tools), HOME=str(tmp_path), ROS_DISTRO='kilted')
+    assert_one_sentence(result, 'ROS_DISTRO=kilted', 'imports rclpy', 'ros-kilted-ros-base')
+
+
+def test_a_sourced_ros_brings_its_own_python_also_a_newer_one():
+    # As if 3.9 were the newest that the wheels have.
+    limit = 'newest_minor=9; '
+    assert 'is Python 3.' in run_bash(f'{limit} probe_python "{sys.executable}"').stdout
+    result = run_bash(f'{limit} find_ros_python; echo "$good_python"', PYTHON=sys.executable,
+                      ROS_DISTRO='rolling', **rclpy_paths())
+    assert result.stdout.startswith('/'), result.stderr
 
 
 def test_a_missing_cmake_is_named(tools):
@@ -225,7 +298,16 @@ def test_another_machine_is_told_to_install_ros(tools):
     (tools / 'uname').unlink()
     write_program(tools / 'uname', '#!/bin/sh\necho aarch64\n')
     assert_one_sentence(run_bash('check_platform', PATH=str(tools)),
-                        'got aarch64', 'install ROS 2 Jazzy')
+                        'got aarch64', 'install ROS 2 Jazzy', 'pip install .')
+
+
+def test_another_machine_goes_on_with_a_sourced_ros(tools):
+    (tools / 'uname').unlink()
+    write_program(tools / 'uname', '#!/bin/sh\necho aarch64\n')
+    result = run_bash('mode="sourced /opt/ros/kilted"; pending=(venv)\n'
+                      'find_ros_python() { echo on; }; check_first',
+                      PATH=str(tools), ROS_DISTRO='kilted')
+    assert result.stdout == 'on\n', result.stderr
 
 
 def test_a_key_changes_with_texts_names_and_contents(tmp_path):
@@ -267,6 +349,18 @@ def test_a_failed_step_shows_the_end_of_its_output(tmp_path):
     assert '300' in shown and '100' not in shown
     assert "step 'second' failed with exit code 7" in result.stderr
     assert 'log/setup.log' in result.stderr
+
+
+def test_every_test_that_needs_ros_runs_on_every_release():
+    paths = run_bash('source scripts/lib/ros_tests.sh; printf "%s\\n" "${ros_tests[@]}"')
+    paths = [ROOT / path for path in paths.stdout.split()]
+    assert all(path.exists() for path in paths)
+    needs_ros = re.compile(
+        r'^ *(?:from|import) (?:rclpy|\w+_msgs|std_srvs|dynamics_interfaces|dynamics_node\.ros|'
+        r'support\.processes)\b', re.MULTILINE)
+    for module in sorted((ROOT / 'test').rglob('test_*.py')):
+        if needs_ros.search(module.read_text()):
+            assert any(module.is_relative_to(path) for path in paths), module
 
 
 def isolated(**environment):

@@ -1,6 +1,6 @@
 # shellcheck shell=bash disable=SC2154
 # Sourced by env.sh and setup.sh: the environment below the packages of this checkout, that is
-# .venv and ROS 2. Needs `dynamics_root`, the checkout.
+# the virtual environment and ROS 2. Needs `dynamics_root`, the checkout.
 
 # prepend_path VARIABLE FOLDER: put it in front, once.
 prepend_path() {
@@ -11,11 +11,13 @@ prepend_path() {
     export "$1=$2${rest:+:$rest}"
 }
 
-export VIRTUAL_ENV=$dynamics_root/.venv
+# shellcheck source=scripts/lib/release.sh
+source "$dynamics_root/scripts/lib/release.sh"
+export VIRTUAL_ENV=$dynamics_root/$venv
 prepend_path PATH "$VIRTUAL_ENV/bin"
 unset PYTHONHOME
 
-# ROS 2 from wheels lies in .venv. A sourced ROS 2 has set all of this itself.
+# ROS 2 from wheels lies in the virtual environment. A sourced ROS 2 has set all of this itself.
 for _site in "$VIRTUAL_ENV"/lib/python3.*/site-packages; do
     if [[ -d $_site/ros_wheels_bootstrapper ]]; then
         prepend_path AMENT_PREFIX_PATH "$VIRTUAL_ENV"

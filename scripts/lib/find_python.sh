@@ -16,7 +16,7 @@ package = 'python' + version
 def missing():
     if sys.implementation.name != 'cpython' or sysconfig.get_config_var('Py_GIL_DISABLED'):
         return 'is not an ordinary CPython'
-    if not (3, 10) <= sys.version_info[:2] <= (3, 13):
+    if not (3, 10) <= sys.version_info[:2] <= (3, int(sys.argv[1])):
         return 'is Python ' + version
     for module in ('venv', 'ensurepip'):
         if importlib.util.find_spec(module) is None:
@@ -30,12 +30,15 @@ reason = missing()
 print('no ' + reason if reason else 'ok ' + (getattr(sys, '_base_executable', '') or sys.executable))
 EOF
 
+# The newest minor version of Python 3 that is taken.
+newest_minor=13
+
 # probe_python PATH [MODULE]: the probe's answer; nothing if PATH does not run (a shim of pyenv
 # may stand for a version that is not switched on) or cannot import MODULE.
 probe_python() {
     local module=${2:-sys}
     "$1" -c "import $module" </dev/null >/dev/null 2>&1 || return 0
-    "$1" -c "$python_probe" </dev/null 2>/dev/null || true
+    "$1" -c "$python_probe" "$newest_minor" </dev/null 2>/dev/null || true
 }
 
 # python_candidates MINOR...: every file that may be such a Python, those on PATH first.
@@ -88,14 +91,16 @@ find_python() {
 # find_ros_python: sets `good_python` to the Python of the sourced ROS, or ends the script.
 find_ros_python() {
     local -a candidates
+    # The Python that this ROS 2 was built for is the only one that fits, also a newer one.
+    newest_minor=99
     if [[ -n ${PYTHON:-} ]]; then
         candidates=("$PYTHON")
     else
         readarray -t candidates < <(type -a -P python3; python_candidates 12; echo /usr/bin/python3)
     fi
     first_good_python rclpy "${candidates[@]}"
-    [[ -n $good_python ]] || die "ROS_DISTRO=jazzy, so a python3 was expected that imports rclpy" \
-        "and has venv and headers (Ubuntu: apt install ros-jazzy-ros-base python3-venv" \
-        "python3-dev), got: ${rejected:-none that imports rclpy}; without ROS sourced it would be" \
-        "installed into .venv."
+    [[ -n $good_python ]] || die "ROS_DISTRO=$ROS_DISTRO, so a python3 was expected that imports" \
+        "rclpy and has venv and headers (Ubuntu: apt install ros-$ROS_DISTRO-ros-base python3-venv" \
+        "python3-dev), got: ${rejected:-none that imports rclpy}; in a shell that has sourced no" \
+        "ROS, ROS 2 Jazzy is installed into .venv."
 }

@@ -3,15 +3,16 @@
 #
 # Each check ends the script with one sentence that says what to install.
 
-# The wheels of ROS 2 exist for this kind of machine only.
+# The wheels of ROS 2 exist for this kind of machine only; a sourced ROS 2 runs on others too.
 check_platform() {
     local machine kernel
     machine=$(uname -m)
     kernel=$(uname -s)
     if [[ $machine != x86_64 || $kernel != Linux ]] || ! getconf GNU_LIBC_VERSION >/dev/null 2>&1; then
-        die "without ROS 2 Jazzy sourced, x86-64 Linux with glibc was expected (ROS 2 is then" \
+        die "without a sourced ROS 2, x86-64 Linux with glibc was expected (ROS 2 is then" \
             "installed from PyPI, which has it for no other machine), got $machine $kernel:" \
-            "install ROS 2 Jazzy and source its setup.bash first."
+            "install ROS 2 ${ros_release^}, source its setup.bash and run the same command again;" \
+            "the Python library alone needs no ROS (pip install .)."
     fi
 }
 
@@ -55,7 +56,7 @@ check_build_tools() {
 check_network() {
     local constraints=$1 folder code=0
     folder=$(mktemp -d)
-    .venv/bin/python -m pip --disable-pip-version-check --retries 1 --timeout 15 download \
+    "$venv/bin/python" -m pip --disable-pip-version-check --retries 1 --timeout 15 download \
         --quiet --no-deps --no-cache-dir -d "$folder" -c "$constraints" yourdfpy \
         </dev/null >>"$setup_log" 2>&1 || code=$?
     rm -rf "$folder"

