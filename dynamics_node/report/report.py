@@ -209,7 +209,7 @@ class PayloadEntry:
     unlimited_joints : tuple of str
         Joints that carry the point and have no effort limit: they were not counted.
     is_guessed : bool
-        Whether nobody said which link carries it, see `RobotModel.tip_link`.
+        Whether the link that carries it was guessed, see `RobotModel.tip_link`.
 
     """
 

@@ -15,7 +15,7 @@ from ..safety import OutputState, self_compensating
 
 # How often the controllers' answers are looked for, s.
 STEP = 0.02
-# A measured effort above this part of the limit is an effort that somebody applies.
+# A measured effort above this part of the limit is an effort from elsewhere.
 IN_FORCE = 0.05
 
 

@@ -133,7 +133,7 @@ class Hints:
 
 def unheard(node, publisher):
     """
-    Return what to say of commands to which nobody listens.
+    Return what to say of commands to which nothing listens.
 
     Parameters
     ----------
@@ -150,13 +150,13 @@ def unheard(node, publisher):
     topic = publisher.topic_name
     listened = listened_elsewhere(node, publisher)
     if listened:
-        return ('nobody listens there, but somebody does on ' + ', '.join(listened) + ': if that '
+        return ('nothing listens there, but somebody does on ' + ', '.join(listened) + ': if that '
                 'is an effort controller, start the node with  --ros-args -p '
                 f'command_topic:={listened[0]}')
     namespace, _, controller = topic.rpartition('/')[0].rpartition('/')
     manager = _manager(namespace)
     # Only who listens before the output is on sees the ramp.
-    return ('nobody listens there: call ~/enable with false first, because a controller that '
+    return ('nothing listens there: call ~/enable with false first, because a controller that '
             'begins to listen now gets the whole effort at once; then look with  ros2 control '
             f'list_controllers{manager}  and start it with  ros2 control load_controller{manager}'
             f' --set-state active {controller or "forward_effort_controller"}  or set '

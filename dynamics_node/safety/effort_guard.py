@@ -24,11 +24,11 @@ OWN_STALL = 0.1
 LONGEST_FADE = 10.0
 # The part of the largest effort within which a command is near the output.
 NEAR = 0.1
-# So many timeouts without a command are a rest: the next command begins anew.
+# Timeouts without a command that make a rest: the next command begins anew.
 REST = 2.0
-# So many commands must fit into the timeout, or a late one begins a fade.
+# Commands that must fit into the timeout, or a late one begins a fade.
 PERIODS = 3
-# The period of the commands is the median of so many.
+# Number of intervals whose median is the period of the commands.
 INTERVALS = 16
 # An array with more efforts than any arm has joints is not looked through.
 MAX_JOINTS = 1000

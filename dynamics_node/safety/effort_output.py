@@ -135,7 +135,7 @@ class EffortOutput:
             For people.
 
         """
-        # All fields first: whoever hears of the new state finds it complete.
+        # All fields first: an observer of the new state finds it complete.
         self.limiter.resume(start_from)
         self._start_from = self.limiter.last
         self._difference = np.zeros(len(self._start_from))

@@ -302,7 +302,7 @@ def test_enabling_is_refused_while_others_publish(client, start):
     # The node may hear of it a moment later than this client.
     client.until(lambda: answers.append(client.enable(True, publish)) or answers[-1].success,
                  publish)
-    assert 'but nobody listens there' in answers[-1].message
+    assert 'but nothing listens there' in answers[-1].message
 
 
 def test_without_a_robot_enabling_is_refused_and_disabling_is_answered(client, start):

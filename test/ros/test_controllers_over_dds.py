@@ -126,7 +126,7 @@ def test_a_controller_that_begins_to_listen_later_gets_the_ramp_or_stops_the_out
     def publish():
         client.publish(['hinge'], [0.0], [0.0])
     client.until_heard(publish)
-    assert 'nobody listens there' in enable(client, publish)
+    assert 'nothing listens there' in enable(client, publish)
     controller = Controller(client)
     try:
         client.until(lambda: any('has begun to listen' in output.reason for output in outputs),

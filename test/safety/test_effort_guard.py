@@ -339,10 +339,10 @@ def test_with_effort_limits_a_beginning_far_from_zero_is_refused():
 
 
 def test_an_obstacle_keeps_an_effort_from_beginning_but_no_zero():
-    reasons = ['nobody listens']
+    reasons = ['nothing listens']
     bench = Bench(obstacle=lambda: reasons[0])
     assert bench.send(0.1, 0.0, 0.0) is None
-    assert bench.state == 'FAULT' and bench.guard.reason.startswith('nobody listens')
+    assert bench.state == 'FAULT' and bench.guard.reason.startswith('nothing listens')
     assert bench.send(0.0, 0.0, 0.0) is not None
     reasons[0] = ''
     bench.wait(0.3)

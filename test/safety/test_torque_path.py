@@ -233,7 +233,7 @@ def test_a_search_or_a_watchdog_that_no_longer_runs_is_a_fault():
     for _ in range(round((MAX_MONITOR_AGE + 0.2) / 0.01)):
         now += 0.01
         arm.take(now, state)
-        arm.publish(now, arm.path.tick(now))  # ticks, but nobody looks for other publishers
+        arm.publish(now, arm.path.tick(now))  # ticks, but no search for other publishers
     assert arm.fault.startswith('the search for other publishers and controllers has not run')
 
     arm, state = active()
