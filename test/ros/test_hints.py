@@ -39,6 +39,7 @@ class Waiting:
         node.destroy_publisher(self.client.description)
         self.robot, self.time = None, 0.0
         source = DescriptionSource(node, NO_DESCRIPTION, lambda *_: True)
+        source.begin()
         subscription = node.create_subscription(JointState, 'joint_states', lambda _: None,
                                                 qos_profile_sensor_data)
         states = SimpleNamespace(subscription=subscription, topic=subscription.topic_name)
