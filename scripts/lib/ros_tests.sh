@@ -6,6 +6,7 @@ ros_tests=(
     test/soak
     test/fuzz
     test/benchmarks/test_node_latency.py
+    test/safety/test_state_machine.py
     test/test_commands_in_documents.py
     test/test_launch.py
     test/test_mass_matrix_document.py
