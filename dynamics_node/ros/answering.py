@@ -36,6 +36,22 @@ class Answering:
         self.logger = node.get_logger()
         self.parameters = parameters
         self._get_robot = get_robot
+        self._node = node
+
+    def serve(self, kind, name, callback):
+        """
+        Create a private service that waits for the torque while efforts are sent.
+
+        Parameters
+        ----------
+        kind : type
+            Of the service.
+        name : str
+        callback : callable(request, response) -> response
+
+        """
+        self._node.create_service(kind, f'~/{name}', callback,
+                                  callback_group=getattr(self._node, 'service_group', None))
 
     def robot(self):
         """

@@ -7,6 +7,7 @@ import numpy as np
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
+from .callback_groups import ServiceGroup
 from .change_check import check_change
 from .command_output import CommandOutput, output_settings
 from .controller_check import Controllers
@@ -75,6 +76,7 @@ class DynamicsNode(Node):
                                   controllers, self.source)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.states,
                                         self.output, self._external_torque)
+        self.service_group = ServiceGroup(lambda: self.path.is_driving)
         self._answering = [
             DynamicsServices(self, self._get_robot, self.parameters),
             SettingServices(self, self._get_robot, self.parameters),

@@ -30,7 +30,7 @@ class DynamicsServices(Answering):
                 (GetGravityTorque, 'get_gravity_torque'), (GetDynamics, 'get_dynamics'),
                 (InverseDynamics, 'inverse_dynamics'), (ForwardDynamics, 'forward_dynamics'),
                 (GetJacobian, 'get_jacobian')):
-            node.create_service(kind, f'~/{name}', getattr(self, name))
+            self.serve(kind, name, getattr(self, name))
 
     @guarded_service
     def get_mass_matrix(self, request, response):

@@ -31,8 +31,8 @@ class SettingServices(Answering):
     def __init__(self, node, get_robot, parameters):
         """Create the services of a node; see `Answering`."""
         super().__init__(node, get_robot, parameters)
-        node.create_service(SetPayload, '~/set_payload', self.set_payload)
-        node.create_service(SetGravity, '~/set_gravity', self.set_gravity)
+        self.serve(SetPayload, 'set_payload', self.set_payload)
+        self.serve(SetGravity, 'set_gravity', self.set_gravity)
 
     @guarded_service
     def set_payload(self, request, response):

@@ -34,9 +34,9 @@ class TrajectoryServices(Answering):
         """
         super().__init__(node, get_robot, parameters)
         self._is_driving = is_driving
-        node.create_service(ComputeTrajectoryEffort, '~/compute_trajectory_effort',
-                            self.compute_trajectory_effort)
-        node.create_service(GetMaxPayload, '~/get_max_payload', self.get_max_payload)
+        self.serve(ComputeTrajectoryEffort, 'compute_trajectory_effort',
+                   self.compute_trajectory_effort)
+        self.serve(GetMaxPayload, 'get_max_payload', self.get_max_payload)
 
     @guarded_service
     def compute_trajectory_effort(self, request, response):

@@ -213,7 +213,7 @@ def test_what_is_no_trajectory_is_refused_in_words(shared):
 
 
 def test_a_long_one_is_refused_while_efforts_are_sent():
-    node = types.SimpleNamespace(get_logger=lambda: None, create_service=lambda *_: None)
+    node = types.SimpleNamespace(get_logger=lambda: None, create_service=lambda *_, **__: None)
     robot, is_driving = Robot(ARM, ()), True
     services = TrajectoryServices(node, lambda: robot, check_all({}), lambda: is_driving)
     time = np.arange(MOST_WHILE_DRIVING + 1.0)
