@@ -47,7 +47,8 @@ class DescriptionSource:
         else:
             self.subscription = self._node.create_subscription(
                 String, 'robot_description', self._received, ROBOT_DESCRIPTION,
-                event_callbacks=NO_SUBSCRIPTION_EVENTS)
+                event_callbacks=NO_SUBSCRIPTION_EVENTS,
+                callback_group=getattr(self._node, 'service_group', None))
             self.topic = self.subscription.topic_name
 
     @logged

@@ -57,9 +57,9 @@ class Enabling:
         self._source = source
         self._answers: Future | None = None
         self._canceled = 0
-        # The answer waits for the controllers while joint states go on: a group of its own.
-        node.create_service(SetBool, '~/enable', self._requested,
-                            callback_group=ReentrantCallbackGroup())
+        # The answer waits for the controllers while joint states go on: not in their group.
+        node.create_service(SetBool, '~/enable', self._requested, callback_group=getattr(
+            node, 'service_group', None) or ReentrantCallbackGroup())
 
     async def enable(self):
         """

@@ -66,6 +66,7 @@ class DynamicsNode(Node):
         self._external_torque = ExternalTorque(self, self.parameters)
         self.output = CommandOutput(self, self.parameters, self._output_changed)
         self.path = self.output.path
+        self.service_group = ServiceGroup(lambda: self.path.is_driving)
         self.states = StateInput(self, self.parameters, self.output, self, raw_states)
         self._wants_enable = self.parameters['enable_on_start']
         self.source = DescriptionSource(self, self.parameters, self._described)
@@ -76,7 +77,6 @@ class DynamicsNode(Node):
                                   controllers, self.source)
         self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.states,
                                         self.output, self._external_torque)
-        self.service_group = ServiceGroup(lambda: self.path.is_driving)
         self._answering = [
             DynamicsServices(self, self._get_robot, self.parameters),
             SettingServices(self, self._get_robot, self.parameters),
