@@ -108,7 +108,8 @@ class _Loop:
         """Spin until a signal comes or the executor fails; return the exit code."""
         node, executor = self._node, self._executor
         executor.add_node(node)
-        self._signals.call(executor.wake)
+        # A callback of its own: rclpy goes on to wait after a wake-up without one.
+        self._signals.call(node.create_guard_condition(lambda: None).trigger)
         _spare_the_garbage_collector()
         later = threading.Timer(LOAD_AFTER, _load_the_rest)
         later.daemon = True

@@ -43,7 +43,9 @@ class Signals:
         self._has_started = False
         for name in STOPPING_SIGNALS:
             number = getattr(signal, name, None)  # not all of them exist on every system
-            if number is not None and signal.getsignal(number) != signal.SIG_IGN:
+            # SIGINT is ignored at first in every background job of a shell; it stops the arm.
+            is_nohup = name == 'SIGHUP' and signal.getsignal(number) == signal.SIG_IGN
+            if number is not None and not is_nohup:
                 signal.signal(number, self._received)
 
     def call(self, wake):

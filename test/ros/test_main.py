@@ -67,9 +67,6 @@ class Executor:
 
     add_node = remove_node = lambda self, node: None
 
-    def wake(self):
-        pass
-
 
 def loop(fails, signals=None, **options):
     """Return a loop with an output that sends its whole effort, the output and the log."""
@@ -78,7 +75,7 @@ def loop(fails, signals=None, **options):
     node = SimpleNamespace(
         output=output, path=output.path, logger=SimpleNamespace(
             error=log.append, fatal=log.append, warning=log.append),
-        destroy_node=lambda: None)
+        create_guard_condition=lambda _: SimpleNamespace(trigger=None), destroy_node=lambda: None)
     signals = signals or SimpleNamespace(name='', count=0, call=lambda wake: None)
     return main._Loop(node, Executor(fails), signals), output, log
 

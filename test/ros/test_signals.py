@@ -65,3 +65,11 @@ signals.call(gone)""").format(name='INT', more='time.sleep(0.1)')
     done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
                           timeout=30.0, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, 'SIGINT\n', '')
+
+
+def test_sigint_counts_in_a_background_job_where_shells_ignore_it():
+    code = ('import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n' + CODE).format(
+        name='INT', more='')
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                          timeout=30.0, check=False)
+    assert done.stdout == 'SIGINT\n'

@@ -44,7 +44,7 @@ class NodeProcess:
         """Send a signal."""
         self.process.send_signal(number)
 
-    def wait(self, timeout=10.0):
+    def wait(self, timeout=PATIENCE):
         """Wait for the end; return the exit code and everything printed."""
         output, _ = self.process.communicate(timeout=timeout)
         return self.process.returncode, output
