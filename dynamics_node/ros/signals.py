@@ -43,9 +43,10 @@ class Signals:
         self._has_started = False
         for name in STOPPING_SIGNALS:
             number = getattr(signal, name, None)  # not all of them exist on every system
+            if number is None:
+                continue
             # SIGINT is ignored at first in every background job of a shell; it stops the arm.
-            is_nohup = name == 'SIGHUP' and signal.getsignal(number) == signal.SIG_IGN
-            if number is not None and not is_nohup:
+            if name != 'SIGHUP' or signal.getsignal(number) != signal.SIG_IGN:
                 signal.signal(number, self._received)
 
     def call(self, wake):
