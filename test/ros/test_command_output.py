@@ -11,6 +11,7 @@ from dynamics_node.ros.command_output import CommandOutput, output_settings
 from dynamics_node.ros.node import _limiter
 from dynamics_node.ros.parameter_table import check_all
 from dynamics_node.ros.robot import Robot
+from dynamics_node.safety.effort_output import MAX_RAMP_STEP
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -522,5 +523,6 @@ def test_a_payload_that_comes_while_active_goes_out_over_the_start_ramp(client, 
     assert result.successful
     client.until(lambda: client.commands[-1][1] == [pytest.approx(0.0)], publish)
     efforts = np.array([effort for _, [effort] in client.commands])
-    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
-    assert sum(efforts[efforts < 0.95 * HOLD] > 0.05 * HOLD) > 10
+    # A pause of a busy machine counts as a fifth of this ramp at most.
+    assert np.abs(np.diff(efforts)).max() <= (MAX_RAMP_STEP / 0.5 + 0.02) * HOLD
+    assert np.sum((efforts > 0.05 * HOLD) & (efforts < 0.95 * HOLD)) >= 4

@@ -182,6 +182,8 @@ def test_a_guard_that_was_stopped_makes_no_step(active, guard):
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_fades_and_ends_with_0(active, guard, number):
+    if signal.getsignal(number) == signal.SIG_IGN:
+        pytest.skip('these tests run under nohup, which the guard respects')
     active.received.clear()
     guard.send(number)
     guard.send(number)  # as launch does it
