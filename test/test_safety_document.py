@@ -3,7 +3,7 @@
 from pathlib import Path
 import re
 
-from dynamics_node.ros import controller_check, main, protection, signals
+from dynamics_node.ros import command_output, controller_check, main, node, signals
 from dynamics_node.safety import (
     effort_output,
     joint_state_buffer,
@@ -60,7 +60,7 @@ def test_the_numbers_are_those_of_the_code(text):
         ('a step counts at most', effort_output.MAX_PERIODS),
         ('times the clock may go back', torque_path.MAX_RESTARTS),
         ('most joint names', joint_state_buffer.MAX_NAMES),
-        ('other publishers', protection.CHECK_EVERY),
+        ('other publishers', node.CHECK_EVERY + command_output.IDLE_TICK),
         ('longest time without that search', torque_path.MAX_MONITOR_AGE),
         ('time a controller has', controller_check.ANSWER_WITHIN),
         ('signals closer together', signals.SAME_SIGNAL),

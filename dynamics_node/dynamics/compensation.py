@@ -39,9 +39,11 @@ class Compensation:
 
         Parameters
         ----------
-        position, velocity : numpy.ndarray, shape (n,)
-            Of all joints of the model, rad or m and rad/s or m/s. A velocity of NaN counts as
-            zero, and so does that of a joint that is not chosen.
+        position : numpy.ndarray, shape (n,)
+            Of all joints of the model, rad or m.
+        velocity : numpy.ndarray, shape (n,), or None
+            rad/s or m/s; only read if `needs_velocity`. NaN counts as zero, and so does the
+            velocity of a joint that is not chosen.
 
         Returns
         -------
@@ -49,7 +51,9 @@ class Compensation:
             G(q), and the sum of the terms, N m or N.
 
         """
-        G = self._chosen(self.model.gravity_torque(position))
+        G = self.model.gravity_torque(position)
+        if self.index is not None:
+            G = G[self.index]
         effort = G if self.gravity else np.zeros(len(G))
         if self.needs_velocity:
             effort = effort + self._of_motion(position, velocity)

@@ -60,7 +60,10 @@ class Evaluation:
         self.specialisation = specialisation
         self._joint_names = joint_names
         self._n = len(joint_names)
+        self._state_shape = (self._n,)
         self._shapes = {name: shapes(self._n) for name, shapes in SHAPES.items()}
+        self._one_shapes = {name: tuple((1, *shape) for shape in shapes)
+                            for name, shapes in self._shapes.items()}
 
     def __reduce__(self):
         return type(self), (self.packed, self._joint_names, self.specialisation)
@@ -87,9 +90,9 @@ class Evaluation:
 
         """
         arrays = [_plain(value) for value in values.values()]
-        if all(array.shape == (self._n,) for array in arrays):
-            return (), [array[None] for array in arrays]
         shape = arrays[0].shape
+        if len(shape) == 1 and all(array.shape == self._state_shape for array in arrays):
+            return (), [array[None] for array in arrays]
         if any(array.shape != shape for array in arrays) or shape[-1:] != (self._n,):
             arrays = self._fitted(values, arrays)
             shape = arrays[0].shape
@@ -105,6 +108,8 @@ class Evaluation:
 
     def dynamics(self, q, qd, *, out=None, threads=None):
         """Return D, C and G, each with the batch axes of q and qd first."""
+        if out is None and threads is None and self._is_state(q) and self._is_state(qd):
+            return DynamicsTerms(*self._run_one('dynamics', q, qd))
         lead, arrays = self.states(q=q, qd=qd)
         return DynamicsTerms(*self._run('dynamics', lead, arrays, out, threads))
 
@@ -114,11 +119,15 @@ class Evaluation:
 
     def mass_matrix(self, q, *, out=None, threads=None):
         """Return D with the batch axes of q first."""
+        if out is None and threads is None and self._is_state(q):
+            return self._run_one('mass_matrix', q)[0]
         lead, arrays = self.states(q=q)
         return self._run('mass_matrix', lead, arrays, _one(out), threads)[0]
 
     def gravity_torque(self, q, *, out=None, threads=None):
         """Return G with the batch axes of q first."""
+        if out is None and threads is None and self._is_state(q):
+            return self._gravity_of_one(q)
         lead, arrays = self.states(q=q)
         return self._run('gravity_torque', lead, arrays, _one(out), threads)[0]
 
@@ -206,6 +215,27 @@ class Evaluation:
             return [output[0] for output in outputs]
         return [output.reshape(*lead, *shape)
                 for output, shape in zip(outputs, shapes, strict=True)]
+
+    def _is_state(self, array):
+        return (type(array) is np.ndarray and array.shape == self._state_shape
+                and array.dtype is _FLOAT and array.flags.carray)
+
+    # One state, as a control loop has it, straight to the kernel: the Python around it would
+    # take longer than the formulas. Machine code for one state stands in for the method.
+
+    def _gravity_of_one(self, q):
+        if self.specialisation.code is None:
+            self.specialisation.count(1)
+        G = np.empty(self._n)
+        closed_form.gravity_torque_of_one(*self.packed, q, G)
+        return G
+
+    def _run_one(self, name, *state):
+        if self.specialisation.code is None:
+            self.specialisation.count(1)
+        outputs = [np.empty(shape) for shape in self._one_shapes[name]]
+        _KERNELS[name](*self.packed, *[array[None] for array in state], *outputs)
+        return [output[0] for output in outputs]
 
     def _compute(self, code, name, arrays, outputs):
         if code is not None and len(arrays[0]) >= code.lanes and are_ordinary(name, arrays):

@@ -124,6 +124,24 @@ def gravity_torque(structure, numbers, q, G, V):
 
 
 @compiled
+def gravity_torque_of_one(structure, numbers, q, G):
+    """
+    Compute G of one state: what a control loop waits for, with as few arguments as possible.
+
+    Parameters
+    ----------
+    structure, numbers : numpy.ndarray
+        See `packing.pack`.
+    q : numpy.ndarray, shape (n,)
+    G : numpy.ndarray, shape (n,)
+        Overwritten.
+
+    """
+    G[:] = 0.0
+    gravity_of_state(structure, numbers, q, workspace(structure.shape[0]), G)
+
+
+@compiled
 def inverse_dynamics(structure, numbers, q, qd, qdd, tau):
     """
     Compute the efforts of B motions.

@@ -22,6 +22,7 @@ def warm_up():
     closed_form.dynamics(structure, numbers, q, q, matrix, matrix, vector)
     closed_form.mass_matrix(structure, numbers, q, matrix)
     closed_form.gravity_torque(structure, numbers, q, vector, np.empty(1))
+    closed_form.gravity_torque_of_one(structure, numbers, q[0], vector[0])
     closed_form.inverse_dynamics(structure, numbers, q, q, q, vector)
     closed_form.jacobian(structure, numbers, q, 0, np.zeros(3), np.empty((1, 6, 1)))
     closed_form.body_poses(structure, numbers, q, np.zeros(1, dtype=np.int64),

@@ -40,7 +40,7 @@ class Answering:
 
     def serve(self, kind, name, callback):
         """
-        Create a private service that waits for the torque while efforts are sent.
+        Create a private service.
 
         Parameters
         ----------
@@ -50,8 +50,7 @@ class Answering:
         callback : callable(request, response) -> response
 
         """
-        self._node.create_service(kind, f'~/{name}', callback,
-                                  callback_group=getattr(self._node, 'service_group', None))
+        self._node.create_service(kind, f'~/{name}', callback)
 
     def robot(self):
         """

@@ -1,14 +1,23 @@
-"""When the services' callbacks may run beside the torque."""
+"""Which callbacks may run when: the torque always, the services beside it."""
 
 import time
 
-from rclpy.callback_groups import CallbackGroup
+from rclpy.callback_groups import CallbackGroup, ReentrantCallbackGroup
 
 # While efforts are sent, the services are waited for this often, for this long, and for this
 # long after a request, s.
-EVERY = 0.02
-WINDOW = 0.003
-BURST = 0.05
+EVERY = 0.1
+WINDOW = 0.001
+BURST = 0.25
+
+
+class TorqueGroup(ReentrantCallbackGroup):
+    """
+    Of callbacks that may always run, one after the other in the one thread that there is.
+
+    rclpy's default group takes a lock for every entity in every wait.
+
+    """
 
 
 class ServiceGroup(CallbackGroup):
@@ -36,18 +45,18 @@ class ServiceGroup(CallbackGroup):
         super().__init__()
         self._is_driving = is_driving
         self._clock = clock
-        self._open_until = self._next = 0.0
+        self._open_until = self._closed_until = 0.0
 
     def can_execute(self, entity):
         """Tell whether a service is waited for now."""
-        if not self._is_driving():
-            return True
+        # Asked for every service in every wait: the usual answer comes first.
         now = self._clock()
         if now < self._open_until:
             return True
-        if now < self._next:
+        if now < self._closed_until:
             return False
-        self._next, self._open_until = now + EVERY, now + WINDOW
+        if self._is_driving():
+            self._open_until, self._closed_until = now + WINDOW, now + EVERY
         return True
 
     def beginning_execution(self, entity):

@@ -8,6 +8,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from std_msgs.msg import Float64MultiArray
 
+from .callback_groups import TorqueGroup
 from .guard import guarded, logged
 from .messages import to_field
 from .qos import COMMAND, NO_EVENTS, OUTPUT_STATE
@@ -15,6 +16,8 @@ from .throttle import Throttle
 from ..safety import OutputSettings, OutputState, TorquePath
 from ..safety.effort_output import STOP_PERIOD
 
+# Longest time between two ticks, s.
+IDLE_TICK = 0.25
 # The same state is logged at most this often, s; ~/state has every change.
 LOG_EVERY = 0.5
 
@@ -33,7 +36,7 @@ class CommandOutput:
 
     """
 
-    def __init__(self, node, parameters, on_change):
+    def __init__(self, node, parameters, on_change, on_tick=lambda: None):
         """
         Create publishers and watchdog; the output is off.
 
@@ -43,11 +46,13 @@ class CommandOutput:
         parameters : Parameters
         on_change : callable()
             Called after every change of the output's state.
+        on_tick : callable()
+            Called at every tick, and at the latest every IDLE_TICK, whatever the state.
 
         """
         self.logger = node.get_logger()
         self._node = node
-        self._on_change = on_change
+        self._on_change, self._on_tick = on_change, on_tick
         self.commands = 0
         self._message = Float64MultiArray()
         self._saturated = Throttle(1.0)
@@ -57,10 +62,11 @@ class CommandOutput:
         self._state_publisher = node.create_publisher(OutputStateMessage, '~/state', OUTPUT_STATE,
                                                       event_callbacks=NO_EVENTS)
         self.path = TorquePath(output_settings(parameters), self._changed)
-        # On the steady clock: it must watch while simulation time stands still.
-        self._watchdog = node.create_timer(STOP_PERIOD, self._ticked,
-                                           clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self._watchdog.cancel()
+        # On the steady clock: it must watch while simulation time stands still. The only timer of
+        # the node, because each of them costs time in every wait of the executor.
+        self._watchdog = node.create_timer(IDLE_TICK, self._ticked,
+                                           clock=Clock(clock_type=ClockType.STEADY_TIME),
+                                           callback_group=TorqueGroup())
 
     @property
     def topic(self):
@@ -118,10 +124,12 @@ class CommandOutput:
     @guarded
     def _ticked(self):
         try:
-            self.tick()
-        finally:
             if self.path.is_on:
-                self._tick_in(self.path.next_tick_in(time.monotonic()))
+                self.tick()
+        finally:
+            due = self.path.next_tick_in(time.monotonic()) if self.path.is_on else IDLE_TICK
+            self._tick_in(min(due, IDLE_TICK))
+        self._on_tick()
 
     def _tick_within(self, seconds):
         # Never later than was planned: what comes again and again, like a flood of parameters,
@@ -140,8 +148,6 @@ class CommandOutput:
     def _changed(self, state, reason):
         if self.path.is_on:
             self._tick_within(STOP_PERIOD)
-        else:
-            self._watchdog.cancel()
         message = OutputStateMessage(state=int(state), name=state.name, reason=reason)
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._state_publisher.publish(message)

@@ -57,9 +57,10 @@ class Enabling:
         self._source = source
         self._answers: Future | None = None
         self._canceled = 0
-        # The answer waits for the controllers while joint states go on: not in their group.
-        node.create_service(SetBool, '~/enable', self._requested, callback_group=getattr(
-            node, 'service_group', None) or ReentrantCallbackGroup())
+        # The answer waits for the controllers while joint states go on: not in their group. Nor
+        # in that of the other services, which may wait: this one also stops the arm.
+        node.create_service(SetBool, '~/enable', self._requested,
+                            callback_group=ReentrantCallbackGroup())
 
     async def enable(self):
         """

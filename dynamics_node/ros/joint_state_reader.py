@@ -14,6 +14,7 @@ from .joint_state_layout import end_of_names, FRAME, ORIGIN
 _REPRESENTATION = b'\x00\x01\x00\x00' if sys.byteorder == 'little' else b''
 _STAMP = struct.Struct('<iI')
 _COUNT = struct.Struct('<I')
+_DOUBLE = 8
 
 
 class JointStateReader:
@@ -30,6 +31,10 @@ class JointStateReader:
         self._message = JointState()
         self._names = None
         self._end = 0
+        # Of positions, velocities and efforts in the last state: where their number is, as bytes,
+        # and where they are; and how long that state was.
+        self._spans: list[tuple[slice, bytes, slice]] = []
+        self._length = sys.maxsize
 
     def read(self, data):
         """
@@ -55,37 +60,57 @@ class JointStateReader:
 
         """
         if data[FRAME:self._end] == self._names and data[:ORIGIN] == _REPRESENTATION:
-            position, at = _doubles(data, self._end)
-            velocity, at = _doubles(data, at)
-            if at <= len(data):
+            numbers = self._as_before(data) or self._measure(data)
+            if numbers is not None:
                 message, stamp = self._message, self._message.header.stamp
                 stamp.sec, stamp.nanosec = _STAMP.unpack_from(data, ORIGIN)
-                message.position, message.velocity = position, velocity
-                effort, end = _doubles(data, at)
-                message.effort = effort if end <= len(data) else array('d')
+                message.position, message.velocity, message.effort = numbers
                 return message
         return self._learn(data)
+
+    def _as_before(self, data):
+        # The numbers if they are where they were in the last state; None if not.
+        if len(data) < self._length:
+            return None
+        numbers = []
+        for place, count, span in self._spans:
+            if data[place] != count:
+                return None
+            numbers.append(array('d', data[span]))
+        return numbers
+
+    def _measure(self, data):
+        # The numbers, wherever they are; None if the data was cut before the efforts.
+        spans, at = [], self._end
+        for _ in range(3):
+            place, span = _span(data, at)
+            spans.append((place, data[place], span))
+            at = span.stop
+        (_, _, positions), (_, _, velocities), (_, _, efforts) = spans
+        if velocities.stop > len(data):
+            return None
+        if efforts.stop > len(data):
+            return array('d', data[positions]), array('d', data[velocities]), array('d')
+        self._spans, self._length = spans, efforts.stop
+        return [array('d', data[span]) for _, _, span in spans]
 
     def _learn(self, data):
         end = end_of_names(data)
         message = deserialize_message(data, JointState)
         self._names = None
+        self._length = sys.maxsize
         if data[:ORIGIN] == _REPRESENTATION and message.name:
             self._message, self._end, self._names = message, end, data[FRAME:end]
         return message
 
 
-def _doubles(data, at):
-    # Numbers and where they end: beyond the end of the data if that was cut.
-    if at + _COUNT.size > len(data):
-        return None, len(data) + 1
+def _span(data, at):
+    # Where a count and the numbers behind it are: beyond the end of the data if that was cut.
+    place = slice(at, at + _COUNT.size)
+    if place.stop > len(data):
+        return place, slice(place.stop, place.stop)
     count, = _COUNT.unpack_from(data, at)
-    at += _COUNT.size
-    values = array('d')
+    begin = place.stop
     if count:
-        at += (ORIGIN - at) % values.itemsize  # numbers of eight bytes begin at a multiple of it
-        end = at + count * values.itemsize
-        if end <= len(data):
-            values.frombytes(data[at:end])
-        at = end
-    return values, at
+        begin += (ORIGIN - begin) % _DOUBLE  # numbers begin at a multiple of their size
+    return place, slice(begin, begin + count * _DOUBLE)

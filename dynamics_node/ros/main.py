@@ -108,8 +108,9 @@ class _Loop:
         """Spin until a signal comes or the executor fails; return the exit code."""
         node, executor = self._node, self._executor
         executor.add_node(node)
-        # A callback of its own: rclpy goes on to wait after a wake-up without one.
-        self._signals.call(node.create_guard_condition(lambda: None).trigger)
+        # A task: rclpy goes on to wait after a wake-up without one, and a guard condition of the
+        # node's own would cost time in every wait.
+        self._signals.call(lambda: executor.create_task(_do_nothing))
         _spare_the_garbage_collector()
         later = threading.Timer(LOAD_AFTER, _load_the_rest)
         later.daemon = True
@@ -172,6 +173,10 @@ class _Loop:
         except Exception:
             return False
         return is_at_rest
+
+
+def _do_nothing():
+    pass
 
 
 def _spare_the_garbage_collector():

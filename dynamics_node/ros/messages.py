@@ -19,7 +19,7 @@ def to_field(values):
     array.array of 'd'
 
     """
-    return array('d', np.ascontiguousarray(values, dtype=float).tobytes())
+    return array('d', np.asarray(values, dtype=float).tobytes())
 
 
 def from_field(field):

@@ -4,7 +4,6 @@ import math
 import time
 
 import numpy as np
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from .callback_groups import ServiceGroup
@@ -32,6 +31,11 @@ from .trajectory_services import TrajectoryServices
 from ..errors import DynamicsError
 from ..safety import EffortLimiter, GravityChange
 
+# Other publishers and the controllers are looked for this often, s: behind a joint state, because
+# a wake-up of its own costs as much as a state, or else at the next tick of the output.
+CHECK_EVERY = 0.2
+SECOND = 1.0
+
 
 class DynamicsNode(Node):
     """Computes the dynamics of one robot from its description and its joint states."""
@@ -55,18 +59,21 @@ class DynamicsNode(Node):
             If the description given by a parameter is refused.
 
         """
+        # Before rclpy creates the parameter services.
+        self.service_group = ServiceGroup(self._is_driving)
         super().__init__('dynamics_node', **options)
         self.logger = self.get_logger()
         self._robot = None
         self._has_states = False
+        self._next_check = self._next_second = 0.0
         self._not_finite = Throttle(1.0)
         self._gravity_change = GravityChange()
         self.parameters = Parameters(self)
         self._results = Results(self, self.parameters)
         self._external_torque = ExternalTorque(self, self.parameters)
-        self.output = CommandOutput(self, self.parameters, self._output_changed)
+        self.output = CommandOutput(self, self.parameters, self._output_changed,
+                                    self._check_if_due)
         self.path = self.output.path
-        self.service_group = ServiceGroup(lambda: self.path.is_driving)
         self.states = StateInput(self, self.parameters, self.output, self, raw_states)
         self._wants_enable = self.parameters['enable_on_start']
         self.source = DescriptionSource(self, self.parameters, self._described)
@@ -86,11 +93,18 @@ class DynamicsNode(Node):
         self.parameters.watch(self._reconfigured, self._check_against_robot)
         self._protection = Protection(self, self.output, monitor, controllers, self._get_robot)
         self.source.begin()
-        self.create_timer(1.0, self._every_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def create_service(self, *arguments, callback_group=None, **options):
+        """Create a service as rclpy does; by default it waits for the torque, see ServiceGroup."""
+        return super().create_service(
+            *arguments, callback_group=callback_group or self.service_group, **options)
 
     def on_internal_error(self, message):
         """Stop the output: a callback on the torque path has failed."""
         self.output.on_internal_error(message)
+
+    def _is_driving(self):
+        return self.path.is_driving
 
     def _get_robot(self):
         return self._robot
@@ -185,6 +199,17 @@ class DynamicsNode(Node):
         self._results.publish(robot, stamp, effort)
         if self._external_torque.is_on:
             self._external_torque.on_state(robot, stamp, effort)
+        self._check_if_due()
+
+    def _check_if_due(self):
+        now = time.monotonic()
+        if now < self._next_check:
+            return
+        self._next_check = now + CHECK_EVERY
+        self._protection.check()
+        if now >= self._next_second:
+            self._next_second = max(self._next_second, now - CHECK_EVERY) + SECOND
+            self._every_second()
 
     @logged
     def _every_second(self):

@@ -2,13 +2,9 @@
 
 import time
 
-from rclpy.clock import Clock, ClockType
-
 from .guard import logged
 
-# How often other publishers and the controllers are looked for, s: while efforts are sent, and
-# while the output is off, when only the controllers' lifecycle is followed.
-CHECK_EVERY = 0.2
+# How often the controllers' lifecycle is followed while the output is off, s.
 IDLE_EVERY = 1.0
 
 
@@ -23,7 +19,7 @@ class Protection:
 
     def __init__(self, node, output, monitor, controllers, get_robot):
         """
-        Begin to check.
+        Have something to check.
 
         Parameters
         ----------
@@ -43,10 +39,10 @@ class Protection:
         self._had_listener = True
         self._was_driving = False
         self._next_idle = 0.0
-        node.create_timer(CHECK_EVERY, self._check, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     @logged
-    def _check(self):
+    def check(self):
+        """Look for other publishers and at the controllers; called every 0.2 s."""
         now = time.monotonic()
         if self._path.is_driving:
             self._check_driven(now)

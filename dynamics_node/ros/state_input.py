@@ -5,6 +5,7 @@ import time
 from rclpy.qos import QoSHistoryPolicy
 from sensor_msgs.msg import JointState
 
+from .callback_groups import TorqueGroup
 from .guard import guarded
 from .joint_state_reader import JointStateReader
 from .qos import (
@@ -77,7 +78,8 @@ class StateInput:
     def _subscribe(self, **options):
         return self._node.create_subscription(
             JointState, 'joint_states', self._callback, self._profile,
-            event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=self._raw, **options)
+            event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=self._raw,
+            callback_group=TorqueGroup(), **options)
 
     def adapt_queue(self):
         """

@@ -117,7 +117,6 @@ class EffortLimiter:
             If the effort has another length.
 
         """
-        effort = np.asarray(effort, dtype=float)
         if effort.shape != (len(self._last),):
             raise InvalidEffortError(f'expected {len(self._last)} efforts, got shape '
                                      f'{effort.shape}')

@@ -93,6 +93,7 @@ class EffortOutput:
         self.limiter = EffortLimiter(np.zeros(0), np.zeros(0), np.zeros(0))
         self.settings = settings
         self._ramp, self._change = _Ramp(), _Ramp()
+        self._is_ramping = False
         self._start_from = self._stop_from = np.zeros(0)
         self._stop_within = ZERO_WITHIN
         self._difference = np.zeros(0)
@@ -140,6 +141,7 @@ class EffortOutput:
         self._start_from = self.limiter.last
         self._difference = np.zeros(len(self._start_from))
         self._ramp, self._change = _Ramp(now, self.settings.start_ramp), _Ramp()
+        self._is_ramping = True
         self._last_time = now
         self._saturated_since = None
         self._effort = None
@@ -163,6 +165,7 @@ class EffortOutput:
         """
         self._difference = self._remaining_difference() + difference
         self._change = _Ramp(now, self.settings.start_ramp)
+        self._is_ramping = True
         self._effort = None  # of the model before
 
     def follow(self, now, effort, period):
@@ -293,12 +296,10 @@ class EffortOutput:
         if self._effort is None:
             return None
         dt = now - self._last_time
-        self._ramp.advance(now)
-        self._change.advance(now)
         try:
             target = self.limiter.target(self._effort)
-            if self._ramp.progress != 1.0 or self._change.progress != 1.0:
-                target = self._on_the_ramps(np.array(target)).tolist()
+            if self._is_ramping:
+                target = self._on_the_ramps(now, np.array(target)).tolist()
             command = self.limiter.step(
                 target, min(dt, MAX_PERIODS * self._period, STOP_PERIOD))
         except InvalidEffortError as error:
@@ -308,8 +309,11 @@ class EffortOutput:
         self._watch_saturation(now)
         return command
 
-    def _on_the_ramps(self, target):
+    def _on_the_ramps(self, now, target):
+        self._ramp.advance(now)
+        self._change.advance(now)
         progress = self._ramp.progress
+        self._is_ramping = progress < 1.0 or self._change.progress < 1.0
         return (progress * (target + self._remaining_difference())
                 + (1.0 - progress) * self._start_from)
 

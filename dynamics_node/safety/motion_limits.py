@@ -108,6 +108,8 @@ class MotionLimits:
         """
         allowed = self._allowed
         fast = [i for i in joints if abs(velocity[i]) > allowed[i]]
+        if not fast:
+            return ''
         return ', '.join(f'{self.names[i]} at {velocity[i]:.4g} (limit {allowed[i]:g})'
                          for i in fast)
 
@@ -130,5 +132,7 @@ class MotionLimits:
         """
         lower, upper = self._lower, self._upper
         beyond = [i for i in joints if not lower[i] <= position[i] <= upper[i]]
+        if not beyond:
+            return ''
         return ', '.join(f'{self.names[i]} at {position[i]:.6g} (limits {lower[i]:g} to '
                          f'{upper[i]:g})' for i in beyond)

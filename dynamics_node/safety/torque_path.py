@@ -39,7 +39,7 @@ class TorquePath:
         The measured joints; of no joint until `use`.
     compensation : object
         Its `torques(q, qd)` returns the gravity torque and the effort to send, both of shape
-        (m,), N m or N; see `dynamics.Compensation`.
+        (m,), N m or N; qd is None unless `needs_velocity`; see `dynamics.Compensation`.
     is_usable : bool
         Whether the newest joint state gave a gravity torque.
     gravity_torque : numpy.ndarray, shape (m,)
@@ -66,7 +66,8 @@ class TorquePath:
         self.is_usable = self.is_closed = False
         self.gravity_torque = np.zeros(0)
         self._restarts = 0
-        self._arrivals: deque[float] = deque(maxlen=PERIODS + 1)
+        self._periods: deque[float] = deque(maxlen=PERIODS)
+        self._last_arrival = -math.inf
         self._last_look = self._last_tick = self._last_monitored = -math.inf
 
     @property
@@ -87,10 +88,8 @@ class TorquePath:
     @property
     def period(self):
         """Nominal period of the joint states, s: the median of the newest ones."""
-        times = list(self._arrivals)
-        if len(times) < 2:
-            return STOP_PERIOD
-        return sorted(map(float.__sub__, times[1:], times))[(len(times) - 1) // 2]
+        periods = sorted(self._periods)
+        return periods[len(periods) // 2] if periods else STOP_PERIOD
 
     # ----------------------------------------------------------------- robot and parameters
 
@@ -106,7 +105,8 @@ class TorquePath:
         self.buffer = buffer
         self.compensation = None
         self.is_usable = False
-        self._arrivals.clear()
+        self._periods.clear()
+        self._last_arrival = -math.inf
 
     def configure(self, now, settings, compensation, limiter, motion_limits):
         """
@@ -138,10 +138,14 @@ class TorquePath:
         # Where the newest state's effort would lead without ramps and rate limits.
         if self.compensation is None or not self.buffer.is_complete:
             return None
-        _, effort = self.compensation.torques(self.buffer.position, self.buffer.velocity)
+        _, effort = self._torques(self.compensation)
         if not np.isfinite(effort).all():
             return None
         return np.array(self.output.limiter.target(effort))
+
+    def _torques(self, compensation):
+        velocity = self.buffer.velocity if compensation.needs_velocity else None
+        return compensation.torques(self.buffer.position, velocity)
 
     # --------------------------------------------------------------- joint states and ticks
 
@@ -173,11 +177,12 @@ class TorquePath:
         age = self.buffer.age(now)
         if not self.buffer.is_complete or age > self.output.settings.state_timeout:
             return None
-        self._arrivals.append(now)
+        if self._last_arrival > -math.inf:
+            self._periods.append(now - self._last_arrival)
+        self._last_arrival = now
         if self.compensation is None:
             return None
-        self.gravity_torque, effort = self.compensation.torques(
-            self.buffer.position, self.buffer.velocity)
+        self.gravity_torque, effort = self._torques(self.compensation)
         self.is_usable = True
         return self.output.follow(now, effort, self.period) if self.is_driving else None
 

@@ -24,7 +24,7 @@ class Output:
         settings = OutputSettings(100.0, 0.0, stop_ramp, 'ramp_to_zero')
         self.path = TorquePath(settings)
         self.path.use(JointStateBuffer(('a',), ('a',), np.zeros(1)))
-        model = SimpleNamespace(torques=lambda q, qd: (EFFORT, EFFORT))
+        model = SimpleNamespace(torques=lambda q, qd: (EFFORT, EFFORT), needs_velocity=False)
         self.path.configure(time.monotonic(), settings, model, EffortLimiter(
             np.array([10.0]), np.array([1e6]), np.ones(1), ('a',)), MotionLimits.none(('a',)))
         self.sent = []

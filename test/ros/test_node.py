@@ -375,7 +375,8 @@ def test_an_exception_on_the_way_of_the_torque_stops_the_output_and_the_node_liv
     try:
         active()
         compensation = node.path.compensation
-        node.path.compensation = SimpleNamespace(torques=lambda q, qd: 1 / 0)
+        node.path.compensation = SimpleNamespace(torques=lambda q, qd: 1 / 0,
+                                                 needs_velocity=False)
         client.until(client.output_is('FAULT'), publish)
         assert client.outputs[-1].reason == (
             'internal error in _received: division by zero')

@@ -56,51 +56,51 @@ def parts():
 
 
 def test_a_search_that_finds_nothing_is_told_to_the_torque_path(parts):
-    parts.unit._check()
+    parts.unit.check()
     assert parts.path.told == []
     assert parts.path.checks == 1
 
 
 def test_other_publishers_stop_it(parts):
     parts.conflicts.append('1 other publisher')
-    parts.unit._check()
+    parts.unit.check()
     assert parts.path.told == [('fault', '1 other publisher')]
 
 
 def test_a_controller_that_answers_late_and_does_not_fit_stops_it(parts):
     parts.refusals.append('another order')
-    parts.unit._check()
+    parts.unit.check()
     assert parts.path.told == [('fault', 'another order')]
 
 
 def test_a_controller_that_is_deactivated_or_gone_ends_it(parts):
     parts.next_listeners = {'/controller': listener(['/controller is inactive'])}
-    parts.unit._check()
+    parts.unit.check()
     assert parts.path.told == [('lost', '/controller is inactive')]
     parts.path.told.clear()
     parts.next_listeners = {'/controller': listener()}
-    parts.unit._check()
+    parts.unit.check()
     parts.next_listeners = {}
-    parts.unit._check()
+    parts.unit.check()
     assert parts.path.told[0] == ('lost', '/controller no longer listens to the commands')
 
 
 def test_a_listener_that_is_no_controller_may_go(parts):
     parts.next_listeners = {'/controller': listener(), '/plot': listener(is_controller=False)}
-    parts.unit._check()
+    parts.unit.check()
     parts.next_listeners = {'/controller': listener()}
-    parts.unit._check()
+    parts.unit.check()
     assert parts.path.told == []
 
 
 def test_the_first_controller_that_begins_to_listen_gets_the_ramp(parts):
     parts.controllers.listeners = parts.next_listeners = {}
-    parts.unit._check()
+    parts.unit.check()
     parts.next_listeners = {'/controller': listener()}
-    parts.unit._check()
+    parts.unit.check()
     assert parts.path.told == [('restart', '/controller has begun to listen to the commands')]
     parts.next_listeners = {'/controller': listener(), '/plot': listener(is_controller=False)}
-    parts.unit._check()
+    parts.unit.check()
     assert len(parts.path.told) == 1
 
 
@@ -109,7 +109,7 @@ def test_a_search_that_fails_is_no_search(parts):
         raise RuntimeError('no graph')
     parts.controllers.update = fail
     for _ in range(10):
-        parts.unit._check()
+        parts.unit.check()
     assert parts.path.checks == 0  # the torque path stops when the last one is too long ago
     assert len(parts.errors) == 1
 
@@ -118,5 +118,5 @@ def test_while_it_is_off_only_the_controllers_are_followed(parts):
     parts.path.is_driving = parts.path.is_on = False
     parts.conflicts.append('1 other publisher')
     parts.refusals.append('another order')
-    parts.unit._check()
+    parts.unit.check()
     assert parts.path.told == []

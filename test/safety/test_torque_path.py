@@ -27,6 +27,8 @@ BEHAVIORS = ['ramp_to_zero', 'zero', 'hold']
 class Model:
     """A compensation: G of an arm with a gain, as `dynamics.Compensation` returns it."""
 
+    needs_velocity = True
+
     def __init__(self, gain=1.0):
         self.gain = gain
 
