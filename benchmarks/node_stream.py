@@ -4,7 +4,8 @@ from array import array
 import bisect
 import time
 
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
@@ -35,7 +36,7 @@ class Stream:
         Parameters
         ----------
         node : rclpy.node.Node
-            Of the driver; nobody spins it, because an executor would be measured, too.
+            Of the driver.
         namespace : str
             Of the process.
         names : sequence of str
@@ -46,7 +47,6 @@ class Stream:
             The commands that belong to them; one column grows strictly.
 
         """
-        self._context = node.context
         self._messages = [JointState(name=list(names), position=array('d', row),
                                      velocity=array('d', [0.0] * len(row)))
                           for row in positions]
@@ -60,11 +60,16 @@ class Stream:
         self._publisher = node.create_publisher(
             JointState, f'{namespace}/joint_states',
             QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE))
-        self._subscription = node.create_subscription(
-            Float64MultiArray, f'{namespace}/forward_effort_controller/commands',
-            lambda message: None,
+        # In a node of its own, so that the executor that is measured with it has little to do.
+        self._node = rclpy.create_node('commands', context=node.context, namespace=namespace,
+                                       start_parameter_services=False,
+                                       use_global_arguments=False)
+        self._executor = SingleThreadedExecutor(context=node.context)
+        self._executor.add_node(self._node)
+        self._received: list[tuple[float, float]] = []
+        self._subscription = self._node.create_subscription(
+            Float64MultiArray, f'{namespace}/forward_effort_controller/commands', self._heard,
             QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE))
-        self._wait_set = _rclpy.WaitSet(1, 0, 0, 0, 0, 0, self._context.handle)
         self.sent = self.lost = 0
 
     def is_matched(self):
@@ -78,8 +83,9 @@ class Stream:
 
     def drain(self):
         """Forget the commands that have come."""
-        while self._take() is not None:
-            pass
+        for _ in range(20):  # more than its queue holds
+            self._executor.spin_once(timeout_sec=0.0)
+        self._received.clear()
 
     def run(self, rate, count):
         """
@@ -95,19 +101,24 @@ class Stream:
         Returns
         -------
         list of float
-            From publish to the command received, s, of every state that was answered.
+            From publish to the callback with the command, s, of every state that was answered.
 
         """
         self.drain()
-        sent, latencies = [0.0] * count, [None] * count
+        sent: list[float] = []
         begin = time.perf_counter() + 0.002
         for index in range(count):
-            self._receive_until(begin + index / rate, sent, latencies)
+            self._receive_until(begin + index / rate)
             message = self._stamped(index)
-            sent[index] = time.perf_counter()
+            sent.append(time.perf_counter())
             self._publisher.publish(message)
-        self._receive_until(time.perf_counter() + LATE, sent, latencies)
-        answered = [latency for latency in latencies if latency is not None]
+        self._receive_until(time.perf_counter() + LATE)
+        latencies: dict[int, float] = {}
+        for now, key in self._received:
+            index = self._index(key)
+            if index is not None:
+                latencies.setdefault(index, now - sent[index])
+        answered = list(latencies.values())
         self.sent += count
         self.lost += count - len(answered)
         return answered
@@ -115,7 +126,8 @@ class Stream:
     def close(self, node):
         """Take publisher and subscription away from the node again."""
         node.destroy_publisher(self._publisher)
-        node.destroy_subscription(self._subscription)
+        self._executor.shutdown()
+        self._node.destroy_node()
 
     def _stamped(self, index):
         # As a robot's: a state from long ago, or the same one again, is no news to the node.
@@ -123,20 +135,12 @@ class Stream:
         message.header.stamp = self._clock.now().to_msg()
         return message
 
-    def _receive_until(self, end, sent, latencies):
+    def _receive_until(self, end):
         while (left := end - time.perf_counter()) > 0.0:
-            self._wait_set.clear_entities()
-            self._wait_set.add_subscription(self._subscription.handle)
-            self._wait_set.wait(int(left * 1e9))
-            now = time.perf_counter()
-            while (message := self._take()) is not None:
-                index = self._index(message.data[self._column])
-                if index is not None and latencies[index] is None:
-                    latencies[index] = now - sent[index]
+            self._executor.spin_once(timeout_sec=left)
 
-    def _take(self):
-        taken = self._subscription.handle.take_message(Float64MultiArray, False)
-        return None if taken is None else taken[0]
+    def _heard(self, message):
+        self._received.append((time.perf_counter(), message.data[self._column]))
 
     def _index(self, key):
         # The nearest of the known answers, if it is one of them at all: on the start ramp, for

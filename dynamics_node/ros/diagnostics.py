@@ -79,6 +79,8 @@ class Diagnostics:
             level, text = DiagnosticStatus.WARN, f'{publishers} publishers, expected 1'
         elif outside := buffer.outside():
             level, text = DiagnosticStatus.WARN, f'beyond the position limits: {outside}'
+        elif silent := robot.stale_others(robot.selection.index, now, timeout):
+            level, text = DiagnosticStatus.WARN, f'taken where last seen: {", ".join(silent)}'
         age = buffer.age(now)
         return self._status('joint states', level, text, {
             'rate [Hz]': f'{self._state_rate.value:.1f}',
@@ -107,7 +109,8 @@ class Diagnostics:
 
     def _state_machine(self):
         machine = self._output.path.output.machine
-        level = {'FAULT': DiagnosticStatus.ERROR, 'STOPPING': DiagnosticStatus.WARN}.get(
+        level = {'FAULT': DiagnosticStatus.ERROR, 'STOPPING': DiagnosticStatus.WARN,
+                 'HOLDING': DiagnosticStatus.WARN}.get(
             machine.name, DiagnosticStatus.OK)
         return self._status('state machine', level, f'{machine.name}: {machine.reason}', {
             'state': machine.name, 'reason': machine.reason, 'latched fault': machine.fault})

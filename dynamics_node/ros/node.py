@@ -35,6 +35,8 @@ from ..safety import EffortLimiter, GravityChange
 # a wake-up of its own costs as much as a state, or else at the next tick of the output.
 CHECK_EVERY = 0.2
 SECOND = 1.0
+# Shortest time between two warnings of the same joints that are not measured, s.
+SILENT_EVERY = 10.0
 
 
 class DynamicsNode(Node):
@@ -66,7 +68,7 @@ class DynamicsNode(Node):
         self._robot = None
         self._has_states = False
         self._next_check = self._next_second = 0.0
-        self._not_finite = Throttle(1.0)
+        self._not_finite, self._silent = Throttle(1.0), Throttle(SILENT_EVERY)
         self._gravity_change = GravityChange()
         self.parameters = Parameters(self)
         self._results = Results(self, self.parameters)
@@ -222,8 +224,17 @@ class DynamicsNode(Node):
         self.states.adapt_queue()
         if self._robot is not None:
             self._robot.state_publishers = self.states.publishers
+            self._warn_of_silent_joints(self._robot)
         self._diagnostics.measure()
         self._diagnostics.publish()
+
+    def _warn_of_silent_joints(self, robot):
+        # They get no effort, but gravity depends on where they are.
+        silent = self.path.is_driving and robot.stale_others(
+            robot.selection.index, time.monotonic(), self.parameters['state_timeout'])
+        if silent and self._silent.is_due():
+            self.logger.warning(f'joint_states say nothing of {", ".join(silent)}: the efforts '
+                                'take such a joint where it was last measured, or neutral')
 
     async def _enable_on_start(self):
         try:

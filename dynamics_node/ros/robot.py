@@ -253,10 +253,14 @@ class Robot:
             To append to a message; '' if there is none.
 
         """
-        others = np.setdiff1d(np.arange(len(self.model.joint_names)), index)
-        stale = self.buffer.stale_joints(now, timeout, others.tolist())
+        stale = self.stale_others(index, now, timeout)
         return ('; taken where last measured, or neutral if never: ' + ', '.join(stale)
                 if stale else '')
+
+    def stale_others(self, index, now, timeout):
+        """Return the names of the joints that `unseen_others` tells in words, a list of str."""
+        others = np.setdiff1d(np.arange(len(self.model.joint_names)), index)
+        return self.buffer.stale_joints(now, timeout, others.tolist())
 
     def effort_limits(self, given):
         """

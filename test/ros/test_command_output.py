@@ -5,6 +5,7 @@ import itertools
 import signal
 import time
 
+from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node import RobotModel
 from dynamics_node.ros.command_output import CommandOutput, output_settings
@@ -153,6 +154,27 @@ def test_half_of_the_joints_alone_do_not_keep_the_output_alive(client, start):
     enabled(client, lambda: client.publish(arm.joint_names, q))
     client.until(client.output_is('FAULT'), lambda: client.publish(arm.joint_names[:5], q[:5]))
     assert 'joint_states stale: last 0.5' in client.outputs[-1].reason
+
+
+def test_joints_that_get_no_effort_are_named_when_they_fall_silent(client, start):
+    arm = RobotModel.from_urdf(ARM7)
+    process = start(robot_description_file=ARM7, joints='[shoulder_yaw, shoulder_pitch]')
+    statuses = client.listen(DiagnosticArray, '/diagnostics')
+    client.record_commands()
+    q = arm.neutral_position
+    enabled(client, lambda: client.publish(arm.joint_names, q))
+
+    def is_named():
+        return any('taken where last seen: upper_arm_roll' in status.message
+                   for message in statuses for status in message.status)
+    client.until(is_named, lambda: client.publish(arm.joint_names[:2], q[:2]))
+    assert client.outputs[-1].name == 'ACTIVE'
+    process.send(signal.SIGINT)
+    _, output = process.wait()
+    assert ('joint_states say nothing of upper_arm_roll, elbow_pitch, forearm_roll, wrist_pitch, '
+            'wrist_roll, left_finger_slide: the efforts take such a joint where it was last '
+            'measured') in output
+    assert output.count('say nothing of') == 1
 
 
 def test_efforts_are_clamped_to_the_limit_and_not_for_long(client, start):

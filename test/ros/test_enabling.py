@@ -5,6 +5,7 @@ import time
 from types import SimpleNamespace
 
 from dynamics_node import RobotModel
+from dynamics_node.kernels.warm_up import warm_up
 from dynamics_node.ros.enabling import Enabling
 from dynamics_node.ros.node import _limiter
 from dynamics_node.ros.parameter_table import check_all
@@ -96,6 +97,8 @@ class Parts(SimpleNamespace):
 
 @pytest.fixture
 def parts(client):
+    warm_up()  # a kernel that is compiled while the controllers are asked takes longer than 10 s
+
     class Parameters:
         values = check_all({'state_timeout': 10.0})
 
@@ -120,7 +123,7 @@ def test_the_output_begins_when_the_controllers_have_nothing_against_it(parts):
     parts.controllers.waits = False
     parts.client.until(task.done)
     success, message = task.result()
-    assert success
+    assert success, message
     assert message == ('enabled: full effort in 0.5 s (start_ramp), on /efforts; release brakes '
                        'when ~/state is ACTIVE, not before')
     assert parts.output.path.state.name == 'STARTING'

@@ -353,6 +353,21 @@ def test_stamps_that_cannot_be_true_make_no_torque_and_the_refusal_says_so(clien
     assert 'synchronise the clocks of both machines' in process.wait()[1]
 
 
+def test_every_service_but_enable_waits_for_the_torque(client):
+    node = DynamicsNode(context=client.context)
+    try:
+        waiting = {service.srv_name.rpartition('/')[2] for service in node.services
+                   if service.callback_group is node.service_group}
+        others = {service.srv_name for service in node.services
+                  if service.callback_group is not node.service_group}
+        assert {'get_mass_matrix', 'set_payload', 'set_parameters', 'get_parameters'} <= waiting
+        # rclpy's own get_type_description is made without `create_service`.
+        assert {name.rpartition('/')[2] for name in others} - {'get_type_description'} == {
+            'enable'}
+    finally:
+        node.destroy_node()
+
+
 def test_an_exception_on_the_way_of_the_torque_stops_the_output_and_the_node_lives(
         client, capfd):
     # In this process, where the model can be broken.
