@@ -44,11 +44,16 @@ def _refuse(buffer, *_):
     raise RejectedStateError('length', 'never')
 
 
+def _reversed(arrays):
+    return arrays and [values[::-1] for values in arrays]
+
+
 def _spoil(buffer, *_):
     buffer._position[0] = np.nan
 
 
-_good_doubles = joint_state_reader._doubles
+_good_measure = joint_state_reader.JointStateReader._measure
+_good_as_before = joint_state_reader.JointStateReader._as_before
 _good_learn = joint_state_reader.JointStateReader._learn
 _good_end = joint_state_reader.end_of_names
 _Reader = joint_state_reader.JointStateReader
@@ -71,8 +76,10 @@ PLANTED = {
     'a cut message is read': (
         _Reader, '_learn', lambda self, data: _good_learn(self, _STATES[1]), [_CUT]),
     'a number is wrong': (
-        joint_state_reader, '_doubles', lambda data, at: (
-            _good_doubles(data, at)[0][::-1], _good_doubles(data, at)[1]), _STATES),
+        _Reader, '_measure', lambda self, data: _reversed(_good_measure(self, data)), _STATES),
+    'a number is wrong in a state like the last': (
+        _Reader, '_as_before', lambda self, data: _reversed(_good_as_before(self, data)),
+        _STATES),
     'a good message is refused': (
         joint_state_reader, 'end_of_names', lambda data: _good_end(data[:-8]), _STATES),
     'a refused message moves a joint': (JointStateBuffer, 'update', _refuse, _STATES),

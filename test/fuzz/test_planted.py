@@ -25,6 +25,7 @@ NOTICED = {
     'rclpy prints': 'PrintedError: sequence size exceeds',
     'a cut message is read': 'AssertionError: rclpy does not read this message',
     'a number is wrong': 'AssertionError',
+    'a number is wrong in a state like the last': 'AssertionError',
     'a good message is refused': 'AssertionError: rclpy reads this message',
     'a refused message moves a joint': 'AssertionError: a refused message changed',
     'a position that is not finite': 'AssertionError: position [nan',

@@ -180,6 +180,8 @@ def test_joint_states_that_have_ended_while_their_publisher_is_known(waiting, pu
 def test_in_a_namespace_the_broadcaster_has_another_controller_manager(other, capfd):
     waiting = Waiting('left')
     try:
+        other.node.destroy_publisher(other.states)
+        waiting.client.until(lambda: not waiting.client.node.count_publishers('/joint_states'))
         waiting.describe()
         text = waiting.after(PATIENCE, capfd)
     finally:
