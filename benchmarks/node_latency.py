@@ -6,7 +6,8 @@ What the node costs beyond a bare rclpy relay: latency, processor time, services
 
 The node and the relay run in processes of their own, at the same time, and are fed in turn in
 short slices, so that whatever else the machine does hits both. All ratios are of what was
-measured in the same run.
+measured in the same run. A latency is the time from publishing the state to the callback that gets
+the command, so it holds two executors: that of the process and that of the listener.
 
 """
 
