@@ -118,6 +118,10 @@ class Controllers:
         """Whether there is a listener that may be a controller."""
         return bool(self.listeners) or self.has_unnamed
 
+    def takes_commands(self):
+        """Return whether there is a listener that is not known to be inactive."""
+        return self.has_unnamed or any(not item.inactive() for item in self.listeners.values())
+
     def _found(self):
         # Name → endpoints of each listener.
         own = self._node.get_fully_qualified_name()

@@ -76,8 +76,16 @@ class Protection:
                     for reason in item.inactive()]
         gone = [f'{name} no longer listens to the commands' for name in lost]
         if inactive or gone:
-            self._path.lose_controller(now, '; '.join(inactive + gone))
+            self._lose(now, '; '.join(inactive + gone))
             return
         mismatches = self._controllers.refusals(self._get_robot().joint_names)
         if mismatches:
             self._path.fault(now, '; '.join(mismatches))
+
+    def _lose(self, now, reason):
+        # A listener that still takes commands gets the whole stop: it would keep the last effort.
+        if not self._controllers.takes_commands():
+            self._path.lose_controller(now, reason)
+        elif self._path.is_driving:
+            self._path.fault(now, f'{reason}; its hardware may hold the last efforts: '
+                             + self._path.output.limiter.describe_last())

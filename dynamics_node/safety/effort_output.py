@@ -281,7 +281,8 @@ class EffortOutput:
             For people.
 
         """
-        self.machine.latch(reason)
+        # Also behind a fault whose stop has been cut short: an effort may be left.
+        self.machine.fault = f'{self.machine.fault}; {reason}' if self.machine.fault else reason
         self.machine.enter(OutputState.FAULT, self.machine.fault)
 
     def next_tick_in(self, now):

@@ -12,6 +12,7 @@ class Path:
     def __init__(self):
         self.is_driving = self.is_on = True
         self.told, self.checks = [], 0
+        self.output = SimpleNamespace(limiter=SimpleNamespace(describe_last=lambda: 'a: -32'))
 
     def fault(self, now, reason):
         self.told.append(('fault', reason))
@@ -38,7 +39,9 @@ def parts():
         errors=[])
     controllers = SimpleNamespace(
         listeners=dict(parts.next_listeners), refusals=lambda names: parts.refusals,
-        has_listener=lambda: bool(controllers.listeners))
+        has_listener=lambda: bool(controllers.listeners),
+        takes_commands=lambda: any(not item.inactive()
+                                   for item in controllers.listeners.values()))
 
     def update():
         gone = [name for name, item in controllers.listeners.items()
@@ -83,6 +86,25 @@ def test_a_controller_that_is_deactivated_or_gone_ends_it(parts):
     parts.next_listeners = {}
     parts.unit.check()
     assert parts.path.told[0] == ('lost', '/controller no longer listens to the commands')
+
+
+@pytest.mark.parametrize('others', [
+    {}, {'/controller': listener(['/controller is inactive'])}])
+def test_a_second_controller_that_still_listens_gets_the_whole_stop(parts, others):
+    parts.next_listeners = {'/controller': listener(), '/second': listener()}
+    parts.unit.check()
+    parts.next_listeners = {**others, '/second': listener()}
+    parts.unit.check()
+    [(what, reason)] = parts.path.told
+    assert what == 'fault'
+    assert reason.endswith('; its hardware may hold the last efforts: a: -32')
+    parts.path.is_driving = False  # the stop is on its way: it goes on
+    parts.unit.check()
+    assert len(parts.path.told) == 1
+    parts.next_listeners = {}
+    parts.unit.check()
+    what, reason = parts.path.told[-1]
+    assert what == 'lost' and '/second no longer listens to the commands' in reason
 
 
 def test_a_listener_that_is_no_controller_may_go(parts):

@@ -312,6 +312,15 @@ def test_a_controller_that_was_deactivated_ends_it_and_the_next_start_begins_the
     assert np.abs(arm.take(1.61, state)).max() < 0.2
 
 
+def test_a_controller_that_vanishes_during_the_stop_of_a_fault_is_named_behind_it():
+    arm, _ = active()
+    arm.path.fault(1.01, '2 publishers')
+    arm.path.lose_controller(1.02, '/effort_controller no longer listens')
+    assert arm.name == 'FAULT'
+    assert arm.fault.startswith('2 publishers; /effort_controller no longer listens; the last '
+                                'efforts sent, which the hardware may hold: elbow: ')
+
+
 def test_a_controller_that_begins_to_listen_gets_the_ramp():
     arm, state = active()
     arm.path.restart_from_zero(1.01, 'a controller has begun to listen')
