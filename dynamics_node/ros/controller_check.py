@@ -36,6 +36,10 @@ class Controllers:
         Fully qualified name → what is known of it.
     has_unnamed : bool
         Whether discovery knows a listener whose name it does not know yet.
+    renewed : list of str
+        Names of nodes that have been started again, since the last `update`: a killed node stays
+        in the graph for up to 20 s, beside the new one of its name. A node without the parameters
+        of a controller counts only where no controller listens: it may be a plot or the driver.
 
     """
 
@@ -54,6 +58,8 @@ class Controllers:
         self._topic = topic
         self.listeners: dict[str, Listener] = {}
         self.has_unnamed = False
+        self.renewed: list[str] = []
+        self._new: list[str] = []
 
     def update(self):
         """
@@ -67,6 +73,7 @@ class Controllers:
 
         """
         found = self._found()
+        before = {name: item.endpoints for name, item in self.listeners.items()}
         gone = [name for name, item in self.listeners.items()
                 if item.endpoints.isdisjoint(found.get(name, ()))]
         closed = [self.listeners.pop(name) for name in gone]
@@ -77,6 +84,11 @@ class Controllers:
             listener.endpoints = endpoints
             self.listeners[name] = listener
             listener.update()
+        self._new = [name for name, endpoints in found.items()
+                     if endpoints - before.get(name, set())]
+        controllers = [name for name, item in self.listeners.items() if item.is_controller]
+        self.renewed = [name for name in self._new if name in before
+                        and (name in controllers or not controllers)]
         return sorted(item.name for item in closed if item.is_controller)
 
     def ask_again(self):
@@ -119,8 +131,9 @@ class Controllers:
         return bool(self.listeners) or self.has_unnamed
 
     def takes_commands(self):
-        """Return whether there is a listener that is not known to be inactive."""
-        return self.has_unnamed or any(not item.inactive() for item in self.listeners.values())
+        """Return whether a controller that is not inactive has got the last commands."""
+        return any(item.is_controller and not item.inactive()
+                   for name, item in self.listeners.items() if name not in self._new)
 
     def _found(self):
         # Name → endpoints of each listener.

@@ -61,10 +61,13 @@ class Protection:
             return
         self._follow_controllers(now)
         has_listener = self._controllers.has_listener()
-        if self._path.is_driving and has_listener and not self._had_listener:
+        new = self._controllers.renewed
+        if has_listener and not self._had_listener:
+            new = sorted(self._controllers.listeners) or ['a listener']
+        if self._path.is_driving and new:
             # It has missed the start ramp and would get the whole effort at once.
-            names = ', '.join(sorted(self._controllers.listeners)) or 'a listener'
-            self._path.restart_from_zero(now, f'{names} has begun to listen to the commands')
+            self._path.restart_from_zero(
+                now, f'{", ".join(new)} has begun to listen to the commands')
         self._had_listener = has_listener
         self._path.monitored(time.monotonic())
 
@@ -83,7 +86,7 @@ class Protection:
             self._path.fault(now, '; '.join(mismatches))
 
     def _lose(self, now, reason):
-        # A listener that still takes commands gets the whole stop: it would keep the last effort.
+        # Another controller gets the whole stop: it would keep the last effort.
         if not self._controllers.takes_commands():
             self._path.lose_controller(now, reason)
         elif self._path.is_driving:

@@ -174,6 +174,38 @@ def test_a_listener_that_goes_is_forgotten(client, listeners):
     assert unit.refusals(JOINTS) == []
 
 
+def test_a_driver_that_is_started_again_is_noticed_beside_what_is_left_of_it(client, listeners):
+    driver = listeners('driver', start_parameter_services=False)
+    unit = watched(client, [], [driver])
+    unit.update()
+    assert unit.renewed == []
+    # A killed process stays in the graph: here the first one simply goes on.
+    again = listeners('driver', start_parameter_services=False)
+
+    def is_renewed():
+        unit.update()
+        return unit.renewed == ['/driver']
+    client.until(is_renewed)
+    unit.update()
+    assert unit.renewed == [] and not unit.takes_commands()  # it may be a plot
+    # Beside a controller a node without its parameters is a plot, which may come and go.
+    controller = listeners('controller', joints=JOINTS, interface_name='effort')
+    client.until(lambda: unit.update() is not None and '/controller' in unit.listeners
+                 and unit.listeners['/controller'].has_answered, spinning([controller]))
+    unit.update()
+    assert unit.takes_commands()
+    again.node.destroy_subscription(again.subscription)
+    again.subscription = again.node.create_subscription(
+        Float64MultiArray, 'efforts', lambda _: None, 1)
+    seen = set(unit.listeners['/driver'].endpoints)
+
+    def is_there():
+        unit.update()
+        assert unit.renewed == []
+        return bool(unit.listeners['/driver'].endpoints - seen)
+    client.until(is_there)
+
+
 def test_another_controller_of_the_same_name_is_asked_anew(client, listeners):
     controller = listeners('controller', joints=list(JOINTS))
     unit = watched(client, [controller])

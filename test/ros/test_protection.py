@@ -39,7 +39,7 @@ def parts():
         errors=[])
     controllers = SimpleNamespace(
         listeners=dict(parts.next_listeners), refusals=lambda names: parts.refusals,
-        has_listener=lambda: bool(controllers.listeners),
+        has_listener=lambda: bool(controllers.listeners), renewed=[],
         takes_commands=lambda: any(not item.inactive()
                                    for item in controllers.listeners.values()))
 
@@ -124,6 +124,14 @@ def test_the_first_controller_that_begins_to_listen_gets_the_ramp(parts):
     parts.next_listeners = {'/controller': listener(), '/plot': listener(is_controller=False)}
     parts.unit.check()
     assert len(parts.path.told) == 1
+
+
+def test_a_controller_that_was_started_again_gets_the_ramp(parts):
+    parts.unit.check()
+    assert parts.path.told == []
+    parts.controllers.renewed = ['/controller']
+    parts.unit.check()
+    assert parts.path.told == [('restart', '/controller has begun to listen to the commands')]
 
 
 def test_a_search_that_fails_is_no_search(parts):
