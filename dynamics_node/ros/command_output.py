@@ -16,6 +16,8 @@ from .throttle import Throttle
 from ..safety import OutputSettings, OutputState, TorquePath
 from ..safety.effort_output import STOP_PERIOD
 
+# The subscriptions of the command topic are counted this often, s.
+COUNT_EVERY = 0.02
 # Longest time between two ticks, s.
 IDLE_TICK = 0.25
 # The same state is logged at most this often, s; ~/state has every change.
@@ -53,7 +55,8 @@ class CommandOutput:
         self.logger = node.get_logger()
         self._node = node
         self._on_change, self._on_tick = on_change, on_tick
-        self.commands = 0
+        self.commands = self._listeners = 0
+        self._count_due = Throttle(COUNT_EVERY)
         self._message = Float64MultiArray()
         self._saturated = Throttle(1.0)
         self._state_log = {state: Throttle(LOG_EVERY) for state in OutputState}
@@ -76,6 +79,13 @@ class CommandOutput:
     def has_listener(self):
         """Whether the command topic has a subscription."""
         return self.publisher.get_subscription_count() > 0
+
+    def has_new_listener(self):
+        """Whether there are more subscriptions than when it was asked last, some time ago."""
+        if not self._count_due.is_due():
+            return False
+        before, self._listeners = self._listeners, self.publisher.get_subscription_count()
+        return self._listeners > before
 
     def publish(self, command):
         """Send a command that the torque path has just returned, unless it is too late for it."""

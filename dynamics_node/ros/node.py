@@ -205,7 +205,8 @@ class DynamicsNode(Node):
 
     def _check_if_due(self):
         now = time.monotonic()
-        if now < self._next_check:
+        # A controller that has just begun to listen gets the whole effort until it is noticed.
+        if now < self._next_check and not self.output.has_new_listener():
             return
         self._next_check = now + CHECK_EVERY
         self._protection.check()

@@ -67,7 +67,7 @@ class Protection:
         if self._path.is_driving and new:
             # It has missed the start ramp and would get the whole effort at once.
             self._path.restart_from_zero(
-                now, f'{", ".join(new)} has begun to listen to the commands')
+                time.monotonic(), f'{", ".join(new)} has begun to listen to the commands')
         self._had_listener = has_listener
         self._path.monitored(time.monotonic())
 

@@ -126,6 +126,20 @@ def test_a_timeout_that_becomes_shorter_holds_at_once(client, start):
     assert 'limit 0.200 s' in client.outputs[-1].reason
 
 
+def test_a_listener_more_is_noticed_at_once_and_one_less_is_none(client):
+    output = CommandOutput(client.node, check_all({}), lambda: None)
+    first = client.node.create_subscription(Float64MultiArray, TOPIC, lambda _: None, 1)
+    client.until(output.has_new_listener)
+    client.during(0.1)
+    assert not output.has_new_listener()
+    client.node.destroy_subscription(first)
+    client.until(lambda: not output.has_listener())
+    client.during(0.1)
+    assert not output.has_new_listener()
+    client.node.create_subscription(Float64MultiArray, TOPIC, lambda _: None, 1)
+    client.until(output.has_new_listener)
+
+
 def test_parameters_set_without_end_do_not_put_the_watchdog_off(client):
     robot = Robot(RobotModel.from_urdf(PENDULUM), ())
     values = check_all({})
