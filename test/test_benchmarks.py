@@ -169,6 +169,18 @@ def test_other_files_measure_their_sections(bench, monkeypatch, tmp_path):
         monkeypatch.delitem(sys.modules, f'benchmarks.{name}')
 
 
+def test_a_section_that_is_measured_alone_takes_the_place_of_the_old_one(bench):
+    report = '# Benchmarks\n\n## The node\n\nold\n\n| a |\n|---|\n| 1 |\n\n## How\n\ntext\n'
+    section = bench.sections.Section('The node', r'new \1', [{'what': 'p50', 'ratio': '1.1'}])
+    new = bench.sections.put(report, section, {'CPU': 'a processor', 'Python': '3.12'})
+    assert new.startswith('# Benchmarks\n\n## The node\n\nnew \\1\n\n')
+    assert new.endswith('\n\n## How\n\ntext\n')
+    assert 'CPU a processor; Python 3.12.' in new
+    assert '| p50 | 1.1 |' in new and 'old' not in new
+    with pytest.raises(ValueError, match='expected a section "Other"'):
+        bench.sections.put(report, bench.sections.Section('Other', ''), {})
+
+
 def test_ratios_are_those_of_the_same_round(bench):
     spread = bench.timing.ratio_of([2.0, 40.0, 600.0], [1.0, 10.0, 100.0, 7.0])
     assert (spread.median, spread.low, spread.high) == (4.0, 3.0, 5.0)
