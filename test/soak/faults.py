@@ -71,9 +71,13 @@ def _killed(rig):
 
 @contextmanager
 def _node_stopped(rig):
+    # It can say nothing before it goes on.
     rig.processes.send('node', signal.SIGSTOP)
+    try:
+        rig.during(2 * STATE_TIMEOUT)
+    finally:
+        rig.processes.send('node', signal.SIGCONT)
     yield
-    rig.processes.send('node', signal.SIGCONT)
 
 
 @contextmanager
