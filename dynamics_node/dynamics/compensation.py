@@ -51,9 +51,7 @@ class Compensation:
             G(q), and the sum of the terms, N m or N.
 
         """
-        G = self.model.gravity_torque(position)
-        if self.index is not None:
-            G = G[self.index]
+        G = self._chosen(self.model.gravity_torque(position))
         effort = G if self.gravity else np.zeros(len(G))
         if self.needs_velocity:
             effort = effort + self._of_motion(position, velocity)

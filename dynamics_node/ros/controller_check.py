@@ -37,9 +37,8 @@ class Controllers:
     has_unnamed : bool
         Whether discovery knows a listener whose name it does not know yet.
     renewed : list of str
-        Names of nodes that have been started again, since the last `update`: a killed node stays
-        in the graph for up to 20 s, beside the new one of its name. A node without the parameters
-        of a controller counts only where no controller listens: it may be a plot or the driver.
+        Names of the controllers that were started again before the last `update`. A killed node
+        stays in the graph for up to 20 s, beside the new node of the same name.
 
     """
 
@@ -86,10 +85,18 @@ class Controllers:
             listener.update()
         self._new = [name for name, endpoints in found.items()
                      if endpoints - before.get(name, set())]
-        controllers = [name for name, item in self.listeners.items() if item.is_controller]
-        self.renewed = [name for name in self._new if name in before
-                        and (name in controllers or not controllers)]
+        self.renewed = [name for name in self._new
+                        if name in before and self.listeners[name].is_controller]
+        for name in self.renewed:
+            self._ask_anew(name)
         return sorted(item.name for item in closed if item.is_controller)
+
+    def _ask_anew(self, name):
+        # The new process may have other parameters and another lifecycle state.
+        before = self.listeners[name]
+        before.close()
+        self.listeners[name] = Listener(self._node, name)
+        self.listeners[name].endpoints = before.endpoints
 
     def ask_again(self):
         """Forget what the listeners have answered: their parameters may have changed."""

@@ -19,7 +19,7 @@ class Protection:
 
     def __init__(self, node, output, monitor, controllers, get_robot):
         """
-        Have something to check.
+        Create the checks; `check` runs them.
 
         Parameters
         ----------

@@ -174,35 +174,40 @@ def test_a_listener_that_goes_is_forgotten(client, listeners):
     assert unit.refusals(JOINTS) == []
 
 
-def test_a_driver_that_is_started_again_is_noticed_beside_what_is_left_of_it(client, listeners):
-    driver = listeners('driver', start_parameter_services=False)
-    unit = watched(client, [], [driver])
+def test_a_controller_that_is_started_again_is_noticed_beside_what_is_left_of_it(
+        client, listeners):
+    controller = listeners('controller', joints=list(JOINTS))
+    plot = listeners('plot', start_parameter_services=False)
+    unit = watched(client, [controller], [plot])
     unit.update()
-    assert unit.renewed == []
+    assert unit.renewed == [] and unit.takes_commands()
     # A killed process stays in the graph: here the first one simply goes on.
-    again = listeners('driver', start_parameter_services=False)
+    again = listeners('controller', joints=list(JOINTS))
 
     def is_renewed():
         unit.update()
-        return unit.renewed == ['/driver']
+        return unit.renewed == ['/controller']
     client.until(is_renewed)
-    unit.update()
-    assert unit.renewed == [] and not unit.takes_commands()  # it may be a plot
-    # Beside a controller a node without its parameters is a plot, which may come and go.
-    controller = listeners('controller', joints=JOINTS, interface_name='effort')
-    client.until(lambda: unit.update() is not None and '/controller' in unit.listeners
-                 and unit.listeners['/controller'].has_answered, spinning([controller]))
+    assert not unit.takes_commands()  # the new one has not got the last commands
+    assert unit.is_waiting()  # it is asked for its own parameters
+
+    def has_answered():
+        unit.update()
+        assert unit.renewed == []
+        return unit.listeners['/controller'].has_answered
+    client.until(has_answered, spinning([controller, again]))
     unit.update()
     assert unit.takes_commands()
-    again.node.destroy_subscription(again.subscription)
-    again.subscription = again.node.create_subscription(
+    # A node without the parameters of a controller may come and go: the arm must not sink for it.
+    plot.node.destroy_subscription(plot.subscription)
+    plot.subscription = plot.node.create_subscription(
         Float64MultiArray, 'efforts', lambda _: None, 1)
-    seen = set(unit.listeners['/driver'].endpoints)
+    seen = set(unit.listeners['/plot'].endpoints)
 
     def is_there():
         unit.update()
         assert unit.renewed == []
-        return bool(unit.listeners['/driver'].endpoints - seen)
+        return '/plot' in unit.listeners and bool(unit.listeners['/plot'].endpoints - seen)
     client.until(is_there)
 
 
