@@ -1,4 +1,4 @@
-"""Which callbacks may run when: the torque always, the services beside it."""
+"""Callback groups: the torque path always runs, services only now and then beside it."""
 
 import time
 
@@ -13,7 +13,7 @@ BURST = 0.25
 
 class TorqueGroup(ReentrantCallbackGroup):
     """
-    Of callbacks that may always run, one after the other in the one thread that there is.
+    Callbacks that may always run, one after another in the single thread of the executor.
 
     rclpy's default group takes a lock for every entity in every wait.
 

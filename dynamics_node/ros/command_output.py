@@ -81,7 +81,7 @@ class CommandOutput:
         return self.publisher.get_subscription_count() > 0
 
     def has_new_listener(self):
-        """Whether there are more subscriptions than when it was asked last, some time ago."""
+        """Whether subscriptions were added since the last count, at most every COUNT_EVERY."""
         if not self._count_due.is_due():
             return False
         before, self._listeners = self._listeners, self.publisher.get_subscription_count()

@@ -71,7 +71,7 @@ def _killed(rig):
 
 @contextmanager
 def _node_stopped(rig):
-    # It can say nothing before it goes on.
+    # A stopped process cannot report its FAULT: it has to go on first.
     rig.processes.send('node', signal.SIGSTOP)
     try:
         rig.during(2 * STATE_TIMEOUT)

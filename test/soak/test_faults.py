@@ -1,4 +1,4 @@
-"""A fault that ends in FAULT lets the node say so."""
+"""A fault that ends in FAULT leaves the node able to report it."""
 
 from types import SimpleNamespace
 
