@@ -64,6 +64,8 @@ def test_the_names_of_a_robot_do_no_harm():
     assert len(report.robot) < 70 and report.robot.isprintable()
 
 
+# Hypothesis warns when it would print a long description; the descriptions may be long.
+@pytest.mark.filterwarnings('ignore:Generating overly large repr')
 @settings(max_examples=100)
 @given(descriptions())
 def test_a_broken_description_gets_a_report_or_one_clear_error(texts):
