@@ -100,6 +100,7 @@ class EffortOutput:
         self._effort = None
         self._period = STOP_PERIOD
         self._last_time = 0.0
+        self._is_first = False
         self._saturated_since = None
 
     @property
@@ -143,6 +144,7 @@ class EffortOutput:
         self._ramp, self._change = _Ramp(now, self.settings.start_ramp), _Ramp()
         self._is_ramping = True
         self._last_time = now
+        self._is_first = True
         self._saturated_since = None
         self._effort = None
         if not self.machine.is_on:
@@ -227,6 +229,7 @@ class EffortOutput:
 
         """
         self._last_time = now
+        self._is_first = False
         if self.machine.state == OutputState.STARTING and self._is_settled():
             self.machine.enter(OutputState.ACTIVE, 'the full effort has been reached')
         elif self.machine.state == OutputState.STOPPING:
@@ -296,6 +299,9 @@ class EffortOutput:
     def _drive(self, now):
         if self._effort is None:
             return None
+        if self._is_first:
+            # It repeats the efforts in force: ramp and steps count the time since a command.
+            self._ramp, self._last_time = _Ramp(now, self._ramp.duration), now
         dt = now - self._last_time
         try:
             target = self.limiter.target(self._effort)

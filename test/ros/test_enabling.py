@@ -289,9 +289,10 @@ def test_a_check_of_the_controllers_that_fails_is_an_answer_and_not_a_start(part
 def test_efforts_that_an_inactive_controller_may_hold_cannot_be_released(parts):
     assert parts.enable()[0]
     path = parts.output.path
-    path.process_joint_state(time.monotonic(), ['hinge'], [0.0], [0.0], 0, 1)
-    command = path.process_joint_state(time.monotonic() + 0.01, ['hinge'], [0.0], [0.0], 0, 1)
-    path.published(time.monotonic() + 0.01)
+    for after in (0.0, 0.01):
+        now = time.monotonic() + after
+        command = path.process_joint_state(now, ['hinge'], [0.0], [0.0], 0, 1)
+        path.published(now)
     assert command.any()
     path.lose_controller(time.monotonic(), '/c is inactive')
     parts.controllers.listeners['/c'] = SimpleNamespace(inactive=lambda: ['/c is inactive'])

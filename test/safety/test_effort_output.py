@@ -86,6 +86,20 @@ def test_the_start_ramps_from_zero_to_the_torque():
     assert [name for name, _ in bench.states] == ['STARTING', 'ACTIVE']
 
 
+def test_the_first_command_repeats_the_efforts_in_force_and_steps_count_from_it():
+    bench = Bench(start_ramp=0.0).start()
+    bench.now += 0.5  # from the start to the first state
+    np.testing.assert_array_equal(bench.follow(), [0.0, 0.0])
+    np.testing.assert_allclose(bench.follow(period=0.004), 0.004 * RATES * [1.0, -1.0])
+
+
+def test_a_stop_before_the_first_command_ends():
+    bench = Bench().start()
+    bench.output.stop(bench.now, 'asked')
+    bench.tick(1.5)
+    assert bench.name == 'READY'
+
+
 def test_active_is_said_after_the_full_effort_has_gone_out_and_not_before():
     # Rate limits so small that the effort is far from full when the ramp's time is over.
     bench = Bench(rates=np.array([2.0, 2.0])).start()
