@@ -22,17 +22,20 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
         (f'share/{package_name}/launch', files('launch', '*.launch.py')),
-        (f'share/{package_name}/config', files('config', '*.yaml') + files('config', '*.xml')
-         + files('config', '*.rviz')),
-        (f'share/{package_name}/config/robots',
-         files('config/robots', '*.urdf') + files('config/robots', '*.yaml')),
+        (
+            f'share/{package_name}/config',
+            files('config', '*.yaml') + files('config', '*.xml') + files('config', '*.rviz'),
+        ),
+        (
+            f'share/{package_name}/config/robots',
+            files('config/robots', '*.urdf') + files('config/robots', '*.yaml'),
+        ),
     ],
     install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'scipy', 'yourdfpy'],
     extras_require={
         'demo': ['mujoco', 'matplotlib', 'rich'],
         'report': ['rich', 'plotly'],
-        'test': ['pytest', 'pytest-xdist', 'hypothesis', 'pin', 'mujoco',
-                 'example-robot-data'],
+        'test': ['pytest', 'pytest-xdist', 'hypothesis', 'pin', 'mujoco', 'example-robot-data'],
     },
     python_requires='>=3.10',
     zip_safe=True,
@@ -48,6 +51,6 @@ setup(
             'demo = dynamics_node.ros.demo.demo:main',
             'report = dynamics_node.report.__main__:main',
             'markers = dynamics_node.ros.markers.__main__:main',
-        ],
+        ]
     },
 )

@@ -30,32 +30,57 @@ def main(arguments=None):
 
     """
     parser = argparse.ArgumentParser(prog='python -m benchmarks', description=__doc__)
-    parser.add_argument('--output', type=Path, default=ROOT / 'docs', metavar='FOLDER',
-                        help='folder of benchmarks.md and its plot (default: docs)')
-    parser.add_argument('--rounds', type=int, default=21,
-                        help='interleaved rounds of single calls (default: %(default)s)')
-    parser.add_argument('--states', type=int, default=100_000,
-                        help='states in a batch (default: %(default)s)')
-    parser.add_argument('--largest', type=int, default=SIZES[-1],
-                        help='joints of the largest chain and tree (default: %(default)s)')
-    parser.add_argument('--rivals', nargs='*', choices=rivals.FILES, default=list(rivals.FILES),
-                        help='libraries to measure beside this one (default: all)')
-    parser.add_argument('--without-sections', action='store_true',
-                        help='leave out what needs ROS: the node, starting up')
+    parser.add_argument(
+        '--output',
+        type=Path,
+        default=ROOT / 'docs',
+        metavar='FOLDER',
+        help='folder of benchmarks.md and its plot (default: docs)',
+    )
+    parser.add_argument(
+        '--rounds',
+        type=int,
+        default=21,
+        help='interleaved rounds of single calls (default: %(default)s)',
+    )
+    parser.add_argument(
+        '--states', type=int, default=100_000, help='states in a batch (default: %(default)s)'
+    )
+    parser.add_argument(
+        '--largest',
+        type=int,
+        default=SIZES[-1],
+        help='joints of the largest chain and tree (default: %(default)s)',
+    )
+    parser.add_argument(
+        '--rivals',
+        nargs='*',
+        choices=rivals.FILES,
+        default=list(rivals.FILES),
+        help='libraries to measure beside this one (default: all)',
+    )
+    parser.add_argument(
+        '--without-sections',
+        action='store_true',
+        help='leave out what needs ROS: the node, starting up',
+    )
     options = parser.parse_args(arguments)
     if options.rounds < 1 or options.states < 1:
         parser.error('expected at least one round and one state')
-    results = run(options.rounds, options.states,
-                  sizes=[size for size in SIZES if size <= options.largest],
-                  names=options.rivals, with_sections=not options.without_sections,
-                  say=lambda text: print(text, file=sys.stderr, flush=True))
+    results = run(
+        options.rounds,
+        options.states,
+        sizes=[size for size in SIZES if size <= options.largest],
+        names=options.rivals,
+        with_sections=not options.without_sections,
+        say=lambda text: print(text, file=sys.stderr, flush=True),
+    )
     report = render(results, PICTURE)
     options.output.mkdir(parents=True, exist_ok=True)
     (options.output / 'benchmarks.md').write_text(report, encoding='utf-8')
     draw(results, options.output / PICTURE)
     print(report)
-    print(f'Written: {options.output / "benchmarks.md"} and {PICTURE} beside it.',
-          file=sys.stderr)
+    print(f'Written: {options.output / "benchmarks.md"} and {PICTURE} beside it.', file=sys.stderr)
     return 0
 
 

@@ -69,11 +69,13 @@ def check(robot, quantity, call):
             array = call.array(value)
             if array.shape != expected[part].shape:
                 raise DifferentResultError(
-                    f'{part}: expected shape {expected[part].shape}, got {array.shape}')
+                    f'{part}: expected shape {expected[part].shape}, got {array.shape}'
+                )
             error = np.abs(array - expected[part]).max() / np.abs(expected[part]).max()
             if not error <= TOLERANCE:
                 raise DifferentResultError(
                     f'{part}: expected a difference of at most {TOLERANCE:g} of the largest '
-                    f'element, got {error:.2g}')
+                    f'element, got {error:.2g}'
+                )
             worst = max(worst, float(error))
     return worst

@@ -75,22 +75,45 @@ def measure(robot, count, loaded, rounds, say=print):
     functions: dict = {}
     for cores, threads in (('one', 1), ('all', all_cores)):
         functions[OURS, f'dynamics(Q, QD, out=answer, threads={threads})', cores] = (
-            lambda threads=threads: dynamics(Q, QD, out=answer, threads=threads), 1.0)
+            lambda threads=threads: dynamics(Q, QD, out=answer, threads=threads),
+            1.0,
+        )
         functions[FRESH, f'dynamics(Q, QD, threads={threads})', cores] = (
-            lambda threads=threads: dynamics(Q, QD, threads=threads), 1.0)
+            lambda threads=threads: dynamics(Q, QD, threads=threads),
+            1.0,
+        )
     refused: list[str] = []
     if 'pinocchio' in loaded:
         part = max(1, round(LOOP_PART * count))
-        loop = pinocchio_loop(loaded['pinocchio'].calls(robot)['dynamics'].run,
-                              Q[:part], QD[:part])
+        loop = pinocchio_loop(
+            loaded['pinocchio'].calls(robot)['dynamics'].run, Q[:part], QD[:part]
+        )
         how = 'a Python loop over single calls that keeps the results'
-        _admit(functions, refused, ('Pinocchio', how, 'one'), loop, count / part,
-               robot, Q, QD, ('D', 'C', 'G'))
+        _admit(
+            functions,
+            refused,
+            ('Pinocchio', how, 'one'),
+            loop,
+            count / part,
+            robot,
+            Q,
+            QD,
+            ('D', 'C', 'G'),
+        )
     if 'frax' in loaded:
         many = loaded['frax'].batch(robot)
         for cores in ('one', 'all'):
-            _admit(functions, refused, ('frax', 'jax.jit of jax.vmap: D, C q̇ and G', cores),
-                   lambda: many(Q, QD), 1.0, robot, Q, QD, ('D', 'C qd', 'G'))
+            _admit(
+                functions,
+                refused,
+                ('frax', 'jax.jit of jax.vmap: D, C q̇ and G', cores),
+                lambda: many(Q, QD),
+                1.0,
+                robot,
+                Q,
+                QD,
+                ('D', 'C qd', 'G'),
+            )
     say(f'batch: {count} states, {len(functions)} ways')
     return _timed(functions, rounds), refused
 
@@ -111,41 +134,54 @@ def pinocchio_loop(call, Q, QD):
         Without arguments; returns fresh arrays (m, n, n), (m, n, n), (m, n).
 
     """
+
     def loop():
         m, n = Q.shape
         D, C, G = np.empty((m, n, n)), np.empty((m, n, n)), np.empty((m, n))
         for k in range(m):
             D[k], C[k], G[k] = call(Q[k], QD[k])
         return D, C, G
+
     return loop
 
 
 def _admit(functions, refused, key, function, scale, robot, Q, QD, parts):
     # The first states must be the same numbers as ours, as in `agreement`.
     D, C, G = robot.model.dynamics(Q[:CHECKED], QD[:CHECKED])
-    expected = {'D': D, 'C': C, 'G': G,
-                'C qd': np.einsum('bij,bj->bi', C, QD[:CHECKED])}
+    expected = {'D': D, 'C': C, 'G': G, 'C qd': np.einsum('bij,bj->bi', C, QD[:CHECKED])}
     for part, value in zip(parts, function(), strict=True):
         head = np.asarray(value)[:CHECKED]
-        reference = expected[part][:len(head)]
+        reference = expected[part][: len(head)]
         error = np.abs(head - reference).max() / np.abs(reference).max()
         if not error <= TOLERANCE:
-            refused.append(f'{key[0]}, batch, {part}: expected a difference of at most '
-                           f'{TOLERANCE:g} of the largest element, got {error:.2g}')
+            refused.append(
+                f'{key[0]}, batch, {part}: expected a difference of at most '
+                f'{TOLERANCE:g} of the largest element, got {error:.2g}'
+            )
             return
     functions[key] = (function, scale)
 
 
 def _timed(functions, rounds):
     meters = {key: _Meter(function, key[2]) for key, (function, _) in functions.items()}
-    samples = interleaved({key: (meter, [()]) for key, meter in meters.items()}, rounds,
-                          slow_rounds=rounds)
-    scaled = {key: [scale * value for value in samples[key]]
-              for key, (_, scale) in functions.items()}
+    samples = interleaved(
+        {key: (meter, [()]) for key, meter in meters.items()}, rounds, slow_rounds=rounds
+    )
+    scaled = {
+        key: [scale * value for value in samples[key]] for key, (_, scale) in functions.items()
+    }
     ours = {key[2]: scaled[key] for key in functions if key[0] == OURS}
-    return [BatchRow(library, how, cores, scaled[library, how, cores], ours,
-                     meters[library, how, cores].cores_used)
-            for library, how, cores in functions]
+    return [
+        BatchRow(
+            library,
+            how,
+            cores,
+            scaled[library, how, cores],
+            ours,
+            meters[library, how, cores].cores_used,
+        )
+        for library, how, cores in functions
+    ]
 
 
 class _Meter:

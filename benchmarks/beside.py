@@ -45,15 +45,25 @@ def measure_beside(name, python, robots, rounds):
         If the process fails; with the last line that it said.
 
     """
-    job = {'name': name, 'rounds': rounds,
-           'robots': [[robot.name, robot.text] for robot in robots]}
+    job = {
+        'name': name,
+        'rounds': rounds,
+        'robots': [[robot.name, robot.text] for robot in robots],
+    }
     environment = dict(os.environ, LD_LIBRARY_PATH=str(python.parents[1] / 'lib'))
     # What was sourced for this process's Python is of no use to another one.
     for variable in ('PYTHONHOME', 'VIRTUAL_ENV'):
         environment.pop(variable, None)
     environment['PYTHONPATH'] = str(ROOT)
-    run = subprocess.run([str(python), '-m', 'benchmarks.beside'], input=json.dumps(job),
-                         cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [str(python), '-m', 'benchmarks.beside'],
+        input=json.dumps(job),
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if run.returncode != 0:
         lines = run.stderr.strip().splitlines() or ['it said nothing']
         raise RuntimeError(f'the process of {name} failed: {lines[-1]}')
@@ -71,11 +81,18 @@ def main():
     robots = [make_robot(name, text) for name, text in job['robots']]
     rows, refused = measure(robots, loaded, job['rounds'], say=lambda text: None)
     rival = loaded[job['name']]
-    json.dump({'rows': [asdict(row) for row in rows], 'refused': refused,
-               'name': rival.NAME, 'note': rival.NOTE,
-               'version': getattr(rival, 'VERSION', None) or rivals.version_of(rival.PACKAGE),
-               'python': '.'.join(map(str, sys.version_info[:3])),
-               'numpy': rivals.version_of('numpy')}, sys.stdout)
+    json.dump(
+        {
+            'rows': [asdict(row) for row in rows],
+            'refused': refused,
+            'name': rival.NAME,
+            'note': rival.NOTE,
+            'version': getattr(rival, 'VERSION', None) or rivals.version_of(rival.PACKAGE),
+            'python': '.'.join(map(str, sys.version_info[:3])),
+            'numpy': rivals.version_of('numpy'),
+        },
+        sys.stdout,
+    )
 
 
 if __name__ == '__main__':

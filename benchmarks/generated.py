@@ -60,13 +60,15 @@ def _urdf(parents):
             f'<link name="link{k:04d}"><inertial><origin xyz="{_numbers(com)}"/>'
             f'<mass value="{mass:.17g}"/><inertia ixx="{mass * (y + z) / 12:.17g}" ixy="0" '
             f'ixz="0" iyy="{mass * (x + z) / 12:.17g}" iyz="0" '
-            f'izz="{mass * (x + y) / 12:.17g}"/></inertial></link>')
+            f'izz="{mass * (x + y) / 12:.17g}"/></inertial></link>'
+        )
         carrier = 'base' if parent < 0 else f'link{parent:04d}'
         lines.append(
             f'<joint name="joint{k:04d}" type="revolute"><parent link="{carrier}"/>'
             f'<child link="link{k:04d}"/><origin xyz="{_numbers(origin)}"/>'
             f'<axis xyz="{_numbers(axis)}"/>'
-            '<limit lower="-3" upper="3" effort="90" velocity="3"/></joint>')
+            '<limit lower="-3" upper="3" effort="90" velocity="3"/></joint>'
+        )
     return '\n'.join([*lines, '</robot>'])
 
 

@@ -75,13 +75,17 @@ def measure(loaded, rounds, sizes=SIZES, say=print):
                 except DifferentResultError as error:
                     refused.append(f'{name}, {robot.name}: {error}')
                     continue
-                candidates[shape, joints, name] = (call.run,
-                                                   call.arguments('dynamics', robot.states))
+                candidates[shape, joints, name] = (
+                    call.run,
+                    call.arguments('dynamics', robot.states),
+                )
     say(f'growth: {rounds} rounds')
     # All sizes in each round: what slows one round down then bends no curve.
     samples = interleaved(candidates, rounds)
-    return [GrowthRow(shape, joints, name, seconds, samples[shape, joints, 'dynamics_node'])
-            for (shape, joints, name), seconds in samples.items()], refused
+    return [
+        GrowthRow(shape, joints, name, seconds, samples[shape, joints, 'dynamics_node'])
+        for (shape, joints, name), seconds in samples.items()
+    ], refused
 
 
 def exponent(rows, shape, library):
@@ -99,12 +103,15 @@ def exponent(rows, shape, library):
         None if there are not two sizes.
 
     """
-    chosen = sorted((row for row in rows if (row.shape, row.library) == (shape, library)),
-                    key=lambda row: row.joints)[-FITTED:]
+    chosen = sorted(
+        (row for row in rows if (row.shape, row.library) == (shape, library)),
+        key=lambda row: row.joints,
+    )[-FITTED:]
     if len(chosen) < 2:
         return None
     # A call that is slow only at the largest size takes part in fewer rounds.
     rounds = min(len(row.seconds) for row in chosen)
-    slopes = np.polyfit(np.log([row.joints for row in chosen]),
-                        np.log([row.seconds[:rounds] for row in chosen]), 1)[0]
+    slopes = np.polyfit(
+        np.log([row.joints for row in chosen]), np.log([row.seconds[:rounds] for row in chosen]), 1
+    )[0]
     return spread_of(slopes)

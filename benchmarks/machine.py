@@ -20,8 +20,12 @@ def describe():
     dict of str to str
 
     """
-    facts = {'CPU': f'{_cpu()}, {os.cpu_count()} cores', 'system': _system(),
-             'Python': platform.python_version(), 'commit': commit()}
+    facts = {
+        'CPU': f'{_cpu()}, {os.cpu_count()} cores',
+        'system': _system(),
+        'Python': platform.python_version(),
+        'commit': commit(),
+    }
     if hasattr(os, 'getloadavg'):
         facts['load at the start'] = f'{os.getloadavg()[0]:.2f} (mean of one minute)'
     facts |= {name: version_of(name) or 'not installed' for name in PACKAGES}
@@ -46,8 +50,9 @@ def commit():
 
 
 def _git(*arguments):
-    return subprocess.run(['git', *arguments], cwd=ROOT, capture_output=True, text=True,
-                          check=True).stdout.strip()
+    return subprocess.run(
+        ['git', *arguments], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.strip()
 
 
 def _cpu():

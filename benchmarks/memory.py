@@ -25,8 +25,13 @@ def peak_besides_result(count):
         'result' and 'besides', bytes; None where Linux' /proc cannot tell.
 
     """
-    run = subprocess.run([sys.executable, '-m', 'benchmarks.memory', str(count)], cwd=ROOT,
-                         capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [sys.executable, '-m', 'benchmarks.memory', str(count)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if run.returncode != 0:
         return None
     return json.loads(run.stdout)

@@ -80,6 +80,7 @@ class Driver:
         """Join ROS with a node that has nothing but what is measured."""
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
+
         rclpy.init(args=[])
         self.node = rclpy.create_node('driver', start_parameter_services=False)
         self.executor = SingleThreadedExecutor()
@@ -94,8 +95,10 @@ class Driver:
                 if not process.is_running():
                     raise RuntimeError(f'a process has ended:\n{process.problem()}')
             if time.monotonic() > end:
-                raise RuntimeError(f'not within {PATIENCE:g} s: {condition}\n'
-                                   + '\n'.join(process.problem() for process in processes))
+                raise RuntimeError(
+                    f'not within {PATIENCE:g} s: {condition}\n'
+                    + '\n'.join(process.problem() for process in processes)
+                )
             if time.monotonic() >= due:
                 action()
                 due = time.monotonic() + 0.01
@@ -111,13 +114,20 @@ class Driver:
     def close(self):
         """Leave ROS."""
         import rclpy
+
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.try_shutdown()
 
 
-def measure_all(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS,
-                trajectories=TRAJECTORIES, arguments=()):
+def measure_all(
+    rates=RATES,
+    slices=SLICES,
+    starts=STARTS,
+    bursts=BURSTS,
+    trajectories=TRAJECTORIES,
+    arguments=(),
+):
     """
     Measure everything.
 
@@ -145,20 +155,29 @@ def measure_all(rates=RATES, slices=SLICES, starts=STARTS, bursts=BURSTS,
     os.environ.setdefault('ROS_DOMAIN_ID', str(os.getpid() % 100 + 1))
     driver = Driver()
     try:
-        return (measure_streams(driver, rates, slices, arguments)
-                + measure_services(driver, bursts, arguments)
-                + measure_trajectories(driver, trajectories, arguments)
-                + measure_starts(driver, starts, arguments))
+        return (
+            measure_streams(driver, rates, slices, arguments)
+            + measure_services(driver, bursts, arguments)
+            + measure_trajectories(driver, trajectories, arguments)
+            + measure_starts(driver, starts, arguments)
+        )
     finally:
         driver.close()
 
 
 def measure():
     """Return the rows of `measure_all` as the report wants them: column title → text."""
-    return [{'what': row.name, 'joint states': f'{row.rate:g} Hz' if row.rate else '',
-             'node': f'{row.ours:.3g} {row.unit}', 'bare rclpy': f'{row.relay:.3g} {row.unit}',
-             'ratio': _ratio_text(row), 'quartiles': _quartiles_text(row)}
-            for row in measure_all()]
+    return [
+        {
+            'what': row.name,
+            'joint states': f'{row.rate:g} Hz' if row.rate else '',
+            'node': f'{row.ours:.3g} {row.unit}',
+            'bare rclpy': f'{row.relay:.3g} {row.unit}',
+            'ratio': _ratio_text(row),
+            'quartiles': _quartiles_text(row),
+        }
+        for row in measure_all()
+    ]
 
 
 def _ratio_text(row):
@@ -180,7 +199,8 @@ def measure_streams(driver, rates, slices, arguments=()):
     with node(ROBOT, *arguments) as ours, relay('states') as bare:
         streams = [
             Stream(driver.node, '/ours', robot.joint_names, states, robot.gravity_torque(states)),
-            Stream(driver.node, '/relay', robot.joint_names, states, states)]
+            Stream(driver.node, '/relay', robot.joint_names, states, states),
+        ]
         processes = [ours, bare]
         for stream in streams:
             driver.until(stream.is_matched, streams[0].send, processes)
@@ -190,7 +210,7 @@ def measure_streams(driver, rates, slices, arguments=()):
             cpu: list[list] = [[], []]
             for index in range(slices):
                 # Both orders, so that what comes first has no advantage.
-                for which in ((0, 1) if index % 2 else (1, 0)):
+                for which in (0, 1) if index % 2 else (1, 0):
                     if which == 0:
                         keep_on()
                     before = processes[which].cpu()
@@ -211,8 +231,11 @@ class _Enabler:
         self._driver, self._stream = driver, stream
         self._state = None
         driver.node.create_subscription(
-            OutputState, '/ours/dynamics_node/state', self._heard,
-            QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL))
+            OutputState,
+            '/ours/dynamics_node/state',
+            self._heard,
+            QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL),
+        )
         self._client = driver.node.create_client(SetBool, '/ours/dynamics_node/enable')
 
     def __call__(self):
@@ -220,13 +243,11 @@ class _Enabler:
             self._driver.executor.spin_once(timeout_sec=0.0)
         end = time.monotonic() + PATIENCE
         while self._state != 'ACTIVE':
-            answer = self._driver.call(self._client, SetBool.Request(data=True),
-                                       self._stream.send)
+            answer = self._driver.call(self._client, SetBool.Request(data=True), self._stream.send)
             if time.monotonic() > end:
                 raise RuntimeError(f'not ACTIVE within {PATIENCE:g} s: {answer.message}')
             if answer.success:
-                self._driver.until(lambda: self._state in ('ACTIVE', 'FAULT'),
-                                   self._stream.send)
+                self._driver.until(lambda: self._state in ('ACTIVE', 'FAULT'), self._stream.send)
         self._stream.send()
         time.sleep(0.02)
 
@@ -237,8 +258,9 @@ class _Enabler:
 def _states(robot, count):
     # The second joint moves slowly: a position of its own for every state of a slice, and no
     # step that a limit would cut.
-    states = np.tile(np.clip(np.full(len(robot.joint_names), 0.3), *robot.position_limits.T),
-                     (count, 1))
+    states = np.tile(
+        np.clip(np.full(len(robot.joint_names), 0.3), *robot.position_limits.T), (count, 1)
+    )
     states[:, 1] += np.linspace(0.0, 0.2, count)
     return states
 
@@ -250,13 +272,29 @@ def _stream_rows(rate, latencies, cpu):
         each = [[np.percentile(part, percent) for part in parts] for parts in latencies]
         a, b = np.percentile(ours, percent), np.percentile(bare, percent)
         ratios = [x / y for x, y in zip(*each, strict=True)]
-        rows.append(Row(f'latency p{percent}', rate, 'ms', a * 1e3, b * 1e3,
-                        statistics.median(ratios) if percent == 50 else a / b,
-                        _quartiles(ratios)))
+        rows.append(
+            Row(
+                f'latency p{percent}',
+                rate,
+                'ms',
+                a * 1e3,
+                b * 1e3,
+                statistics.median(ratios) if percent == 50 else a / b,
+                _quartiles(ratios),
+            )
+        )
     ratios = [x / y for x, y in zip(*cpu, strict=True)]
-    rows.append(Row('CPU per command', rate, 'ms', statistics.median(cpu[0]) * 1e3,
-                    statistics.median(cpu[1]) * 1e3, statistics.median(ratios),
-                    _quartiles(ratios)))
+    rows.append(
+        Row(
+            'CPU per command',
+            rate,
+            'ms',
+            statistics.median(cpu[0]) * 1e3,
+            statistics.median(cpu[1]) * 1e3,
+            statistics.median(ratios),
+            _quartiles(ratios),
+        )
+    )
     return rows
 
 
@@ -282,10 +320,14 @@ def measure_services(driver, bursts, arguments=()):
         for client in (mass, trigger):
             stack.callback(driver.node.destroy_client, client)
         stack.callback(driver.node.destroy_publisher, states)
-        measured = JointState(name=list(robot.joint_names),
-                              position=robot.neutral_position.tolist())
-        for ready in (mass.service_is_ready, trigger.service_is_ready,
-                      states.get_subscription_count):
+        measured = JointState(
+            name=list(robot.joint_names), position=robot.neutral_position.tolist()
+        )
+        for ready in (
+            mass.service_is_ready,
+            trigger.service_is_ready,
+            states.get_subscription_count,
+        ):
             driver.until(ready, processes=[ours, bare])
 
         def warm(client, request):
@@ -302,9 +344,13 @@ def measure_services(driver, bursts, arguments=()):
 
         requests = [
             ('get_mass_matrix {}', mass, GetMassMatrix.Request()),
-            ('get_mass_matrix with position', mass,
-             GetMassMatrix.Request(position=robot.neutral_position.tolist())),
-            ('Trigger', trigger, Trigger.Request())]
+            (
+                'get_mass_matrix with position',
+                mass,
+                GetMassMatrix.Request(position=robot.neutral_position.tolist()),
+            ),
+            ('Trigger', trigger, Trigger.Request()),
+        ]
         times: list[list] = [[] for _ in requests]
         for burst in range(bursts):
             for step in range(len(requests)):
@@ -314,10 +360,21 @@ def measure_services(driver, bursts, arguments=()):
                 times[which].append(_burst(driver, client, request))
     rows = []
     for (name, _, _), parts in zip(requests[:-1], times[:-1], strict=True):
-        ratios = [statistics.median(x) / statistics.median(y)
-                  for x, y in zip(parts, times[-1], strict=True)]
-        rows.append(Row(f'{name} p50', None, 'ms', _median_ms(parts), _median_ms(times[-1]),
-                        statistics.median(ratios), _quartiles(ratios)))
+        ratios = [
+            statistics.median(x) / statistics.median(y)
+            for x, y in zip(parts, times[-1], strict=True)
+        ]
+        rows.append(
+            Row(
+                f'{name} p50',
+                None,
+                'ms',
+                _median_ms(parts),
+                _median_ms(times[-1]),
+                statistics.median(ratios),
+                _quartiles(ratios),
+            )
+        )
     return rows
 
 
@@ -339,15 +396,20 @@ def measure_trajectories(driver, rounds, arguments=()):
     robot = RobotModel.from_urdf(ROBOT)
     request = ComputeTrajectoryEffort.Request(trajectory=_trajectory(robot))
     with node(ROBOT, *arguments) as ours, relay('trajectory') as bare, ExitStack() as stack:
-        clients = [driver.node.create_client(ComputeTrajectoryEffort, name) for name in (
-            '/ours/dynamics_node/compute_trajectory_effort', '/relay/relay/trajectory')]
+        clients = [
+            driver.node.create_client(ComputeTrajectoryEffort, name)
+            for name in (
+                '/ours/dynamics_node/compute_trajectory_effort',
+                '/relay/relay/trajectory',
+            )
+        ]
         for client in clients:
             stack.callback(driver.node.destroy_client, client)
             driver.until(client.service_is_ready, processes=[ours, bare])
         times: list[list] = [[], []]
         for index in range(rounds + 1):
             # Both orders, so that what comes first has no advantage.
-            for which in ((0, 1) if index % 2 else (1, 0)):
+            for which in (0, 1) if index % 2 else (1, 0):
                 begin = time.perf_counter()
                 answer = driver.call(clients[which], request)
                 times[which].append(time.perf_counter() - begin)
@@ -356,9 +418,17 @@ def measure_trajectories(driver, rounds, arguments=()):
     # The first call is for the caches.
     a, b = (part[1:] for part in times)
     ratios = [x / y for x, y in zip(a, b, strict=True)]
-    return [Row(f'trajectory of {POINTS:,} points'.replace(',', ' '), None, 'ms',
-                statistics.median(a) * 1e3, statistics.median(b) * 1e3,
-                statistics.median(ratios), _quartiles(ratios))]
+    return [
+        Row(
+            f'trajectory of {POINTS:,} points'.replace(',', ' '),
+            None,
+            'ms',
+            statistics.median(a) * 1e3,
+            statistics.median(b) * 1e3,
+            statistics.median(ratios),
+            _quartiles(ratios),
+        )
+    ]
 
 
 def _trajectory(robot):
@@ -385,18 +455,35 @@ def measure_starts(driver, starts, arguments=()):
     # The first start is for the caches of the disk and of compiled kernels.
     for index in range(starts + 1):
         pair = [
-            _start(driver, lambda: node(ROBOT, *arguments, namespace='/start'),
-                   '/start/dynamics_node/gravity_torque', lambda: states.publish(measured)),
-            _start(driver, lambda: relay('torque', namespace='/start'),
-                   '/start/relay/gravity_torque', lambda: states.publish(measured))]
+            _start(
+                driver,
+                lambda: node(ROBOT, *arguments, namespace='/start'),
+                '/start/dynamics_node/gravity_torque',
+                lambda: states.publish(measured),
+            ),
+            _start(
+                driver,
+                lambda: relay('torque', namespace='/start'),
+                '/start/relay/gravity_torque',
+                lambda: states.publish(measured),
+            ),
+        ]
         if index:
             ours.append(pair[0])
             bare.append(pair[1])
     driver.node.destroy_publisher(states)
     differences = [a - b for a, b in zip(ours, bare, strict=True)]
-    return [Row('start to first torque, beyond rclpy', None, 's', statistics.median(ours),
-                statistics.median(bare), statistics.median(differences),
-                _quartiles(differences))]
+    return [
+        Row(
+            'start to first torque, beyond rclpy',
+            None,
+            's',
+            statistics.median(ours),
+            statistics.median(bare),
+            statistics.median(differences),
+            _quartiles(differences),
+        )
+    ]
 
 
 def _start(driver, start, topic, publish):
@@ -432,12 +519,16 @@ def table(rows):
     str
 
     """
-    lines = ['| what | joint states | node | bare rclpy | ratio | quartiles |',
-             '|---|---|---|---|---|---|']
+    lines = [
+        '| what | joint states | node | bare rclpy | ratio | quartiles |',
+        '|---|---|---|---|---|---|',
+    ]
     for row in rows:
         rate = f'{row.rate:g} Hz' if row.rate else ''
-        lines.append(f'| {row.name} | {rate} | {row.ours:.3g} {row.unit} | {row.relay:.3g} '
-                     f'{row.unit} | {_ratio_text(row)} | {_quartiles_text(row)} |')
+        lines.append(
+            f'| {row.name} | {rate} | {row.ours:.3g} {row.unit} | {row.relay:.3g} '
+            f'{row.unit} | {_ratio_text(row)} | {_quartiles_text(row)} |'
+        )
     return '\n'.join(lines)
 
 

@@ -18,8 +18,12 @@ class Measured:
     def __init__(self, module, *arguments):
         """Start `python -m module arguments`; what it prints is kept for `problem`."""
         self._log = tempfile.TemporaryFile('w+')  # noqa: SIM115 (closed by close)
-        self._process = subprocess.Popen([sys.executable, '-m', module, *arguments], cwd=ROOT,
-                                         stdout=self._log, stderr=subprocess.STDOUT)
+        self._process = subprocess.Popen(
+            [sys.executable, '-m', module, *arguments],
+            cwd=ROOT,
+            stdout=self._log,
+            stderr=subprocess.STDOUT,
+        )
 
     def cpu(self):
         """
@@ -72,9 +76,17 @@ def started(module, *arguments):
 
 def node(urdf, *arguments, namespace='/ours'):
     """Run the node with a robot, its topics in a namespace, for the time of a with block."""
-    return started('dynamics_node.ros.main', *arguments, '--ros-args',
-                   '-r', f'__ns:={namespace}', '-p', f'robot_description_file:={urdf}',
-                   '-p', f'state_timeout:={STATE_TIMEOUT}')
+    return started(
+        'dynamics_node.ros.main',
+        *arguments,
+        '--ros-args',
+        '-r',
+        f'__ns:={namespace}',
+        '-p',
+        f'robot_description_file:={urdf}',
+        '-p',
+        f'state_timeout:={STATE_TIMEOUT}',
+    )
 
 
 def relay(kind, namespace='/relay'):

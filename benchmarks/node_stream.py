@@ -47,9 +47,12 @@ class Stream:
             The commands that belong to them; one column grows strictly.
 
         """
-        self._messages = [JointState(name=list(names), position=array('d', row),
-                                     velocity=array('d', [0.0] * len(row)))
-                          for row in positions]
+        self._messages = [
+            JointState(
+                name=list(names), position=array('d', row), velocity=array('d', [0.0] * len(row))
+            )
+            for row in positions
+        ]
         self._clock = node.get_clock()
         steps = (answers[1:] - answers[:-1]).min(axis=0)
         self._column = int(steps.argmax())
@@ -58,24 +61,34 @@ class Stream:
         self._tolerance = 0.1 * steps[self._column]
         self._keys = answers[:, self._column].tolist()
         self._publisher = node.create_publisher(
-            JointState, f'{namespace}/joint_states',
-            QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE))
+            JointState,
+            f'{namespace}/joint_states',
+            QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE),
+        )
         # In a node of its own, so that the executor that is measured with it has little to do.
-        self._node = rclpy.create_node('commands', context=node.context, namespace=namespace,
-                                       start_parameter_services=False,
-                                       use_global_arguments=False)
+        self._node = rclpy.create_node(
+            'commands',
+            context=node.context,
+            namespace=namespace,
+            start_parameter_services=False,
+            use_global_arguments=False,
+        )
         self._executor = SingleThreadedExecutor(context=node.context)
         self._executor.add_node(self._node)
         self._received: list[tuple[float, float]] = []
         self._subscription = self._node.create_subscription(
-            Float64MultiArray, f'{namespace}/forward_effort_controller/commands', self._heard,
-            QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE))
+            Float64MultiArray,
+            f'{namespace}/forward_effort_controller/commands',
+            self._heard,
+            QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE),
+        )
         self.sent = self.lost = 0
 
     def is_matched(self):
         """Tell whether both directions have found each other."""
-        return bool(self._publisher.get_subscription_count()
-                    and self._subscription.get_publisher_count())
+        return bool(
+            self._publisher.get_subscription_count() and self._subscription.get_publisher_count()
+        )
 
     def send(self, index=0):
         """Publish one state of the slice, without waiting for its command."""

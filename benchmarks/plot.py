@@ -51,11 +51,17 @@ def _draw_single(results, axes):
 
 def _draw_batch(results, axes):
     rows = results.batch[::-1]
-    labels = [f'{row.library},\n{row.cores} core{"" if row.cores == "one" else "s"}'
-              for row in rows]
+    labels = [
+        f'{row.library},\n{row.cores} core{"" if row.cores == "one" else "s"}' for row in rows
+    ]
     for place, row in enumerate(rows):
-        _dots(axes, [place], [spread_of(row.seconds)], 1e6 / results.batch_count,
-              'C0' if row.library == OURS else 'C7')
+        _dots(
+            axes,
+            [place],
+            [spread_of(row.seconds)],
+            1e6 / results.batch_count,
+            'C0' if row.library == OURS else 'C7',
+        )
     axes.set_yticks(range(len(rows)), labels)
     axes.set_ylim(-0.6, len(rows) - 0.4)
     if rows:
@@ -72,10 +78,15 @@ def _draw_growth(results, axes):
     for number, library in enumerate(dict.fromkeys(row.library for row in results.growth)):
         for shape in SHAPES:
             rows = [row for row in results.growth if (row.shape, row.library) == (shape, library)]
-            axes.loglog([row.joints for row in rows],
-                        [1e6 * spread_of(row.seconds).median for row in rows],
-                        _LINES[shape], marker='o', markersize=3, color=f'C{number}',
-                        label=f'{library}, {shape}')
+            axes.loglog(
+                [row.joints for row in rows],
+                [1e6 * spread_of(row.seconds).median for row in rows],
+                _LINES[shape],
+                marker='o',
+                markersize=3,
+                color=f'C{number}',
+                label=f'{library}, {shape}',
+            )
     sizes = list(dict.fromkeys(row.joints for row in results.growth))
     axes.set_xticks(sizes, [str(size) for size in sizes])
     axes.set_xticks([], minor=True)
@@ -89,13 +100,21 @@ def _draw_growth(results, axes):
 def _dots(axes, places, spreads, scale, color, label=None):
     # Dots with quartiles: the length of a bar means nothing on a logarithmic axis.
     medians = [scale * spread.median for spread in spreads]
-    sides = [[scale * (spread.median - spread.low) for spread in spreads],
-             [scale * (spread.high - spread.median) for spread in spreads]]
-    axes.errorbar(medians, places, xerr=sides, fmt='o', markersize=5, capsize=2, color=color,
-                  label=label)
+    sides = [
+        [scale * (spread.median - spread.low) for spread in spreads],
+        [scale * (spread.high - spread.median) for spread in spreads],
+    ]
+    axes.errorbar(
+        medians, places, xerr=sides, fmt='o', markersize=5, capsize=2, color=color, label=label
+    )
     for median, spread, place in zip(medians, spreads, places, strict=True):
-        axes.annotate(digits(median), (scale * spread.high, place), (6, -3),
-                      textcoords='offset points', fontsize=7)
+        axes.annotate(
+            digits(median),
+            (scale * spread.high, place),
+            (6, -3),
+            textcoords='offset points',
+            fontsize=7,
+        )
     axes.set_xscale('log')
     axes.margins(x=0.3)
     axes.grid(alpha=0.3, axis='x')

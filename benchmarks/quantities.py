@@ -66,5 +66,7 @@ class Call:
         list of tuple
 
         """
-        return [tuple(self.argument(value) for value in state[:ARGUMENTS[quantity]])
-                for state in states]
+        return [
+            tuple(self.argument(value) for value in state[: ARGUMENTS[quantity]])
+            for state in states
+        ]

@@ -26,7 +26,8 @@ class StatesRelay(Node):
         """Create one subscription and one publisher."""
         super().__init__('relay')
         self.commands = self.create_publisher(
-            Float64MultiArray, 'forward_effort_controller/commands', RELIABLE)
+            Float64MultiArray, 'forward_effort_controller/commands', RELIABLE
+        )
         self.create_subscription(JointState, 'joint_states', self.received, BEST_EFFORT)
 
     def received(self, message):
@@ -80,8 +81,12 @@ class TorqueSource(Node):
 
 def main():
     """Run the node that the first argument names until SIGINT or SIGTERM."""
-    kind = {'states': StatesRelay, 'trigger': TriggerServer, 'trajectory': TrajectoryServer,
-            'torque': TorqueSource}[sys.argv[1]]
+    kind = {
+        'states': StatesRelay,
+        'trigger': TriggerServer,
+        'trajectory': TrajectoryServer,
+        'torque': TorqueSource,
+    }[sys.argv[1]]
     rclpy.init(args=sys.argv)
     try:
         rclpy.spin(kind())

@@ -75,8 +75,11 @@ def arms():
     public = Path(str(package.locate_file('cmeel.prefix/share/example-robot-data/robots')))
     return [
         make_robot('UR5', (public / 'ur_description/urdf/ur5_robot.urdf').read_text()),
-        make_robot('Panda', (public / 'panda_description/urdf/panda.urdf').read_text(),
-                   fixed=('panda_finger_joint1', 'panda_finger_joint2')),
+        make_robot(
+            'Panda',
+            (public / 'panda_description/urdf/panda.urdf').read_text(),
+            fixed=('panda_finger_joint1', 'panda_finger_joint2'),
+        ),
         arm7(),
     ]
 
@@ -90,8 +93,11 @@ def arm7():
     Robot
 
     """
-    return make_robot('arm7', (ROOT / 'config/robots/arm7.urdf').read_text(),
-                      fixed=('left_finger_slide', 'right_finger_slide'))
+    return make_robot(
+        'arm7',
+        (ROOT / 'config/robots/arm7.urdf').read_text(),
+        fixed=('left_finger_slide', 'right_finger_slide'),
+    )
 
 
 def make_robot(name, text, fixed=(), count=32):
@@ -117,8 +123,10 @@ def make_robot(name, text, fixed=(), count=32):
     model = RobotModel.from_urdf(text)
     n = len(model.joint_names)
     rng = np.random.default_rng(7)
-    states = [(rng.uniform(-1.0, 1.0, n), rng.normal(0.0, 1.0, n), rng.normal(0.0, 1.0, n))
-              for _ in range(count)]
+    states = [
+        (rng.uniform(-1.0, 1.0, n), rng.normal(0.0, 1.0, n), rng.normal(0.0, 1.0, n))
+        for _ in range(count)
+    ]
     return Robot(name, text, model, states)
 
 

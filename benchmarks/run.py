@@ -10,8 +10,15 @@ from .rivals import ours
 from .robots import arms
 
 
-def run(rounds, batch_count, sizes=growth.SIZES, names=rivals.FILES, kdl_python=KDL_PYTHON,
-        with_sections=True, say=print):
+def run(
+    rounds,
+    batch_count,
+    sizes=growth.SIZES,
+    names=rivals.FILES,
+    kdl_python=KDL_PYTHON,
+    with_sections=True,
+    say=print,
+):
     """
     Measure everything.
 
@@ -77,8 +84,10 @@ def _add_kdl(results, missing, python, robots, rounds, say):
     results.notes[name] = (
         f'{answer["note"]} Debian builds it for its own Python only, so it ran in a process of '
         f'its own (Python {answer["python"]}, numpy {answer["numpy"]}) with this library beside '
-        'it: its ratio is of that process.')
+        'it: its ratio is of that process.'
+    )
     label = f'{name} (own process)'
-    results.single += [replace(row, library=label) for row in answer['rows']
-                       if row.library == name]
+    results.single += [
+        replace(row, library=label) for row in answer['rows'] if row.library == name
+    ]
     results.refused += answer['refused']

@@ -22,8 +22,10 @@ from .rivals import version_of
 from .robots import ROOT
 
 # Key → title, file.
-PLACES = {'trajectory': ('Trajectories', 'trajectory_effort'),
-          'node': ('The node', 'node_latency')}
+PLACES = {
+    'trajectory': ('Trajectories', 'trajectory_effort'),
+    'node': ('The node', 'node_latency'),
+}
 
 
 @dataclass
@@ -96,14 +98,18 @@ def put(report, section, facts):
     str
 
     """
-    alone = 'Measured by itself, after the rest of this page, on: ' + '; '.join(
-        f'{name} {value}' for name, value in facts.items()) + '.'
+    alone = (
+        'Measured by itself, after the rest of this page, on: '
+        + '; '.join(f'{name} {value}' for name, value in facts.items())
+        + '.'
+    )
     text = '\n\n'.join([f'## {section.title}', section.text, alone, tables.section_table(section)])
     pattern = rf'^## {re.escape(section.title)}\n.*?(?=^## |\Z)'
     if not re.search(pattern, report, re.MULTILINE | re.DOTALL):
         raise ValueError(f'expected a section "{section.title}" in the report, got none')
-    return re.sub(pattern, lambda _: f'{text}\n\n', report, count=1,
-                  flags=re.MULTILINE | re.DOTALL)
+    return re.sub(
+        pattern, lambda _: f'{text}\n\n', report, count=1, flags=re.MULTILINE | re.DOTALL
+    )
 
 
 def main(arguments=None):

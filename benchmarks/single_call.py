@@ -117,4 +117,4 @@ class _Group:
         for name, seconds in samples.items():
             self.rows[name].seconds.extend(seconds)
             # A slow library takes part in the first rounds: ours of the same ones.
-            self.rows[name].ours.extend(samples[ours.NAME][:len(seconds)])
+            self.rows[name].ours.extend(samples[ours.NAME][: len(seconds)])

@@ -21,8 +21,9 @@ def table(titles, rows):
 
     """
     lines = ['| ' + ' | '.join(titles) + ' |', '|---' * len(titles) + '|']
-    lines += ['| ' + ' | '.join(str(cell).replace('|', '\\|') for cell in row) + ' |'
-              for row in rows]
+    lines += [
+        '| ' + ' | '.join(str(cell).replace('|', '\\|') for cell in row) + ' |' for row in rows
+    ]
     return '\n'.join(lines)
 
 
@@ -48,12 +49,17 @@ def single_table(results, quantity):
     for library in _unique(row.library for row in rows):
         cells = {row.robot: row for row in rows if row.library == library}
         first = next(iter(cells.values()))
-        line = [library, ', '.join(first.parts).replace('qdd', 'q̈').replace('qd', 'q̇')
-                .replace('tau', 'τ')]
+        line = [
+            library,
+            ', '.join(first.parts).replace('qdd', 'q̈').replace('qd', 'q̇').replace('tau', 'τ'),
+        ]
         for robot in robots:
             row = cells.get(robot)
-            line += ['–', '–'] if row is None else [
-                time_text(spread_of(row.seconds).median), _ratio(row.seconds, row.ours)]
+            line += (
+                ['–', '–']
+                if row is None
+                else [time_text(spread_of(row.seconds).median), _ratio(row.seconds, row.ours)]
+            )
         body.append(line)
     return table(titles, body)
 
@@ -72,9 +78,13 @@ def calls_table(results):
 
     """
     hows = {(row.library, row.quantity): row.how for row in results.single}
-    return table(['library', *QUANTITIES.values()],
-                 [[library, *(hows.get((library, quantity), '–') for quantity in QUANTITIES)]
-                  for library in _unique(row.library for row in results.single)])
+    return table(
+        ['library', *QUANTITIES.values()],
+        [
+            [library, *(hows.get((library, quantity), '–') for quantity in QUANTITIES)]
+            for library in _unique(row.library for row in results.single)
+        ],
+    )
 
 
 def batch_table(results):
@@ -93,11 +103,31 @@ def batch_table(results):
     body = []
     for row in results.batch:
         median = spread_of(row.seconds).median
-        body.append([row.library, row.how, row.cores, digits(spread_of(row.cores_used).median),
-                     time_text(median), time_text(median / results.batch_count),
-                     _ratio(row.seconds, row.ours['one']), _ratio(row.seconds, row.ours['all'])])
-    return table(['library', 'how', 'cores allowed', 'cores busy', 'all states', 'per state',
-                  'ratio to ours on one core', 'ratio to ours on all'], body)
+        body.append(
+            [
+                row.library,
+                row.how,
+                row.cores,
+                digits(spread_of(row.cores_used).median),
+                time_text(median),
+                time_text(median / results.batch_count),
+                _ratio(row.seconds, row.ours['one']),
+                _ratio(row.seconds, row.ours['all']),
+            ]
+        )
+    return table(
+        [
+            'library',
+            'how',
+            'cores allowed',
+            'cores busy',
+            'all states',
+            'per state',
+            'ratio to ours on one core',
+            'ratio to ours on all',
+        ],
+        body,
+    )
 
 
 def growth_table(results):
@@ -151,9 +181,16 @@ def section_table(section):
     if not section.rows:
         return ''
     titles = list(section.rows[0])
-    return table(titles, [[row.get(title, '–') if isinstance(row.get(title), str)
-                           else digits(row[title]) for title in titles]
-                          for row in section.rows])
+    return table(
+        titles,
+        [
+            [
+                row.get(title, '–') if isinstance(row.get(title), str) else digits(row[title])
+                for title in titles
+            ]
+            for row in section.rows
+        ],
+    )
 
 
 def _ratio(theirs, ours):

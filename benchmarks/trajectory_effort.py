@@ -65,6 +65,7 @@ def by_pinocchio(robot, time, q):
     from scipy.interpolate import CubicSpline
 
     from .rivals.pinocchio import model_of
+
     model = model_of(robot)
     data, rnea = model.createData(), pinocchio.rnea
 
@@ -75,6 +76,7 @@ def by_pinocchio(robot, time, q):
         for i in range(len(q)):
             result[i] = rnea(model, data, q[i], qd[i], qdd[i])
         return result
+
     return efforts
 
 
@@ -109,25 +111,33 @@ def measure(count=POINTS, rounds=ROUNDS):
         'efforts, accelerations missing': lambda: effort(time, q, qd),
         'efforts, nothing missing': lambda: effort(time, q, qd, qdd),
         'largest payload': lambda: robot.model.max_payload(q, 'tool_center', qd=qd, qdd=qdd),
-        'scipy and Pinocchio: efforts, from positions alone': by_pinocchio(robot, time, q)}
+        'scipy and Pinocchio: efforts, from positions alone': by_pinocchio(robot, time, q),
+    }
     expected, theirs = effort(time, q), list(ways.values())[-1]()
     error = np.abs(theirs - expected).max() / np.abs(expected).max()
     if not error <= TOLERANCE:
-        raise RuntimeError(f'efforts of Pinocchio: expected a difference of at most {TOLERANCE:g} '
-                           f'of the largest, got {error:.2g}')
-    samples = interleaved({name: (way, [()]) for name, way in ways.items()}, rounds,
-                          slow_rounds=rounds)
+        raise RuntimeError(
+            f'efforts of Pinocchio: expected a difference of at most {TOLERANCE:g} '
+            f'of the largest, got {error:.2g}'
+        )
+    samples = interleaved(
+        {name: (way, [()]) for name, way in ways.items()}, rounds, slow_rounds=rounds
+    )
     return [_row(name, count, seconds, samples[ours]) for name, seconds in samples.items()]
 
 
 def _row(name, count, seconds, ours):
     ratio = ratio_of(seconds, ours)
-    return {'what': name, f'{count} points': time_text(spread_of(seconds).median),
-            'ratio': digits(ratio.median),
-            'quartiles': f'{digits(ratio.low)} to {digits(ratio.high)}'}
+    return {
+        'what': name,
+        f'{count} points': time_text(spread_of(seconds).median),
+        'ratio': digits(ratio.median),
+        'quartiles': f'{digits(ratio.low)} to {digits(ratio.high)}',
+    }
 
 
 if __name__ == '__main__':
     from .sections import Section
     from .tables import section_table
+
     print(section_table(Section('', '', measure())))

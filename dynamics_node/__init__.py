@@ -36,9 +36,22 @@ if TYPE_CHECKING:
 __version__ = '0.1.0'
 
 __all__ = [
-    'ArgumentError', 'DynamicsError', 'DynamicsTerms', 'Friction', 'InertiaError', 'MaxPayload',
-    'MomentumObserver', 'OverLimit', 'Payload', 'RobotDescriptionError', 'RobotModel',
-    'SingularMassMatrixError', 'Trajectory', '__version__', 'complete_trajectory', 'over_limit',
+    'ArgumentError',
+    'DynamicsError',
+    'DynamicsTerms',
+    'Friction',
+    'InertiaError',
+    'MaxPayload',
+    'MomentumObserver',
+    'OverLimit',
+    'Payload',
+    'RobotDescriptionError',
+    'RobotModel',
+    'SingularMassMatrixError',
+    'Trajectory',
+    '__version__',
+    'complete_trajectory',
+    'over_limit',
 ]
 
 
@@ -46,5 +59,6 @@ def __getattr__(name):
     # Loaded on first use: numba takes a second, and not everything in here needs it.
     if name in __all__:
         from . import dynamics
+
         return getattr(dynamics, name)
     raise AttributeError(f'module {__name__!r} has no attribute {name!r}')

@@ -70,7 +70,7 @@ def quoted(text):
 
     """
     text = str(text)
-    return repr(text if len(text) <= _SHOWN else text[:_SHOWN - 3] + '...')
+    return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + '...')
 
 
 def suggestion(name, names):

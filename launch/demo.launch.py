@@ -32,20 +32,32 @@ VIEWERS = ('rviz2', 'robot_state_publisher')
 def generate_launch_description():
     """Return the simulated robot, the node and their arguments."""
     share = Path(get_package_share_directory('dynamics_node'))
-    return LaunchDescription([
-        DeclareLaunchArgument('robot', default_value=str(share / 'config/robots/arm7.urdf'),
-                              description='Path of the URDF'),
-        DeclareLaunchArgument('params_file', default_value='', description='Parameter file of '
-                              'the node. Empty: the defaults, but a state_timeout of 0.5 s'),
-        DeclareLaunchArgument('namespace', default_value='',
-                              description='Namespace of both and of their topics'),
-        DeclareLaunchArgument('view', default_value='false',
-                              description='Open the viewer of the simulated robot'),
-        DeclareLaunchArgument('rviz', default_value='false',
-                              description='Open RViz, if it is installed'),
-        OpaqueFunction(function=start),
-        OpaqueFunction(function=show, condition=IfCondition(LaunchConfiguration('rviz'))),
-    ])
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                'robot',
+                default_value=str(share / 'config/robots/arm7.urdf'),
+                description='Path of the URDF',
+            ),
+            DeclareLaunchArgument(
+                'params_file',
+                default_value='',
+                description='Parameter file of '
+                'the node. Empty: the defaults, but a state_timeout of 0.5 s',
+            ),
+            DeclareLaunchArgument(
+                'namespace', default_value='', description='Namespace of both and of their topics'
+            ),
+            DeclareLaunchArgument(
+                'view', default_value='false', description='Open the viewer of the simulated robot'
+            ),
+            DeclareLaunchArgument(
+                'rviz', default_value='false', description='Open RViz, if it is installed'
+            ),
+            OpaqueFunction(function=start),
+            OpaqueFunction(function=show, condition=IfCondition(LaunchConfiguration('rviz'))),
+        ]
+    )
 
 
 def start(context):
@@ -53,17 +65,27 @@ def start(context):
     robot = file_of('robot', LaunchConfiguration('robot').perform(context))
     params_file = LaunchConfiguration('params_file').perform(context)
     # A simulation on a desktop computer is late more often than an arm.
-    parameters = ([file_of('params_file', params_file)] if params_file
-                  else [{'state_timeout': 0.5}])
+    parameters = [file_of('params_file', params_file)] if params_file else [{'state_timeout': 0.5}]
     namespace = LaunchConfiguration('namespace')
     return [
-        Node(package='dynamics_node', executable='simulated_robot', name='simulated_robot',
-             namespace=namespace, parameters=[{'robot_description_file': robot,
-                                               'view': LaunchConfiguration('view')}],
-             # It has said why; the node would only say that nobody publishes a description.
-             output='screen', on_exit=Shutdown(reason='the simulated robot has ended')),
-        Node(package='dynamics_node', executable='dynamics_node', name='dynamics_node',
-             namespace=namespace, parameters=parameters, output='screen'),
+        Node(
+            package='dynamics_node',
+            executable='simulated_robot',
+            name='simulated_robot',
+            namespace=namespace,
+            parameters=[{'robot_description_file': robot, 'view': LaunchConfiguration('view')}],
+            # It has said why; the node would only say that nobody publishes a description.
+            output='screen',
+            on_exit=Shutdown(reason='the simulated robot has ended'),
+        ),
+        Node(
+            package='dynamics_node',
+            executable='dynamics_node',
+            name='dynamics_node',
+            namespace=namespace,
+            parameters=parameters,
+            output='screen',
+        ),
     ]
 
 
@@ -80,10 +102,13 @@ def show(context):
     """Return RViz and the programs that it needs; the demo runs without RViz, too, and says so."""
     missing = [package for package in VIEWERS if not is_installed(package)]
     if missing:
-        return [LogInfo(msg=f'rviz:=true: {" and ".join(missing)} not found, going on without; '
-                            'install ' + ' '.join(
-                                f'ros-$ROS_DISTRO-{package.replace("_", "-")}'
-                                for package in missing))]
+        return [
+            LogInfo(
+                msg=f'rviz:=true: {" and ".join(missing)} not found, going on without; '
+                'install '
+                + ' '.join(f'ros-$ROS_DISTRO-{package.replace("_", "-")}' for package in missing)
+            )
+        ]
     config = Path(get_package_share_directory('dynamics_node')) / 'config/dynamics.rviz'
     robot = file_of('robot', LaunchConfiguration('robot').perform(context))
     text = Path(robot).read_text(encoding='utf-8')
@@ -91,16 +116,32 @@ def show(context):
     # Link names are the same in every namespace, so each has its own frames.
     frames = [('/tf', 'tf'), ('/tf_static', 'tf_static')]
     return [
-        Node(package='dynamics_node', executable='markers', name='markers', namespace=namespace,
-             output='screen'),
+        Node(
+            package='dynamics_node',
+            executable='markers',
+            name='markers',
+            namespace=namespace,
+            output='screen',
+        ),
         # The simulated robot has published the description already.
-        Node(package='robot_state_publisher', executable='robot_state_publisher',
-             namespace=namespace, parameters=[{'robot_description': text}],
-             remappings=[*frames, ('robot_description', '~/robot_description')]),
-        Node(package='rviz2', executable='rviz2', namespace=namespace,
-             arguments=['-d', str(config), '-f', root_link(text)],
-             remappings=[*frames, ('/robot_description', 'robot_description'),
-                         ('/dynamics_node/markers', 'dynamics_node/markers')]),
+        Node(
+            package='robot_state_publisher',
+            executable='robot_state_publisher',
+            namespace=namespace,
+            parameters=[{'robot_description': text}],
+            remappings=[*frames, ('robot_description', '~/robot_description')],
+        ),
+        Node(
+            package='rviz2',
+            executable='rviz2',
+            namespace=namespace,
+            arguments=['-d', str(config), '-f', root_link(text)],
+            remappings=[
+                *frames,
+                ('/robot_description', 'robot_description'),
+                ('/dynamics_node/markers', 'dynamics_node/markers'),
+            ],
+        ),
     ]
 
 
@@ -117,5 +158,6 @@ def root_link(text):
     """Return the link of a URDF that is nobody's child: the frame of the markers."""
     robot = ElementTree.fromstring(text.encode())
     children = {joint.find('child').get('link') for joint in robot.findall('joint')}
-    return next(link.get('name') for link in robot.findall('link')
-                if link.get('name') not in children)
+    return next(
+        link.get('name') for link in robot.findall('link') if link.get('name') not in children
+    )

@@ -8,5 +8,6 @@ source scripts/env.sh
 
 code=0
 ruff check . || code=1
+ruff format --check . || code=1
 python -m mypy dynamics_node benchmarks || code=1
 exit "$code"

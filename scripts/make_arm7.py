@@ -29,11 +29,7 @@ MOTOR_MODULE = 3400.0
 HAND_MIXTURE = 1500.0
 
 ALONG_Y = (np.pi / 2, 0.0, 0.0)
-COLORS = {
-    'white': '0.92 0.93 0.95 1',
-    'dark': '0.20 0.22 0.26 1',
-    'orange': '0.95 0.45 0.10 1',
-}
+COLORS = {'white': '0.92 0.93 0.95 1', 'dark': '0.20 0.22 0.26 1', 'orange': '0.95 0.45 0.10 1'}
 
 HEADER = """
   arm7: a 7-joint arm with a parallel gripper, designed for this package (no product's geometry).
@@ -105,76 +101,138 @@ def motor(radius: float, length: float, xyz: Vector, rpy: Vector = (0.0, 0.0, 0.
 
 
 LINKS = (
-    Link('base', (
-        Part('cylinder', (0.095, 0.0, 0.02), ALUMINIUM, 'dark', (0.0, 0.0, 0.01)),
-        tube(0.06, 0.054, 0.02, 0.16),
-        motor(0.05, 0.10, (0.0, 0.0, 0.11)),
-    )),
-    Link('shoulder', (
-        tube(0.06, 0.054, 0.0, 0.12),
-        motor(0.05, 0.10, (0.0, 0.0, 0.17), ALONG_Y),
-    )),
-    Link('upper_arm', (
-        tube(0.052, 0.047, 0.05, 0.16),
-        motor(0.045, 0.09, (0.0, 0.0, 0.115)),
-    )),
-    Link('elbow', (
-        tube(0.05, 0.046, 0.0, 0.105),
-        motor(0.045, 0.09, (0.0, 0.0, 0.15), ALONG_Y),
-    )),
-    Link('forearm', (
-        tube(0.042, 0.038, 0.045, 0.20),
-        motor(0.035, 0.075, (0.0, 0.0, 0.1625)),
-    )),
-    Link('wrist', (
-        tube(0.042, 0.038, 0.0, 0.135),
-        motor(0.035, 0.075, (0.0, 0.0, 0.17), ALONG_Y),
-    )),
-    Link('hand_offset', (
-        Part('box', (0.13, 0.06, 0.02), ALUMINIUM, 'white', (0.03, 0.0, 0.045)),
-        motor(0.035, 0.075, (0.06, 0.0, 0.0925)),
-    )),
-    Link('wrist_disc', (
-        Part('cylinder', (0.036, 0.0, 0.02), ALUMINIUM, 'orange', (0.0, 0.0, 0.01)),
-    )),
-    Link('flange', (
-        Part('cylinder', (0.0315, 0.01, 0.02), ALUMINIUM, 'white', (0.0, 0.0, 0.01)),
-    )),
-    Link('hand', (
-        Part('box', (0.05, 0.13, 0.07), HAND_MIXTURE, 'dark', (0.0, 0.0, 0.035)),
-    )),
-    Link('left_finger', (
-        Part('box', (0.02, 0.014, 0.06), ALUMINIUM, 'orange', (0.0, 0.007, 0.03)),
-    )),
-    Link('right_finger', (
-        Part('box', (0.02, 0.014, 0.06), ALUMINIUM, 'orange', (0.0, -0.007, 0.03)),
-    )),
+    Link(
+        'base',
+        (
+            Part('cylinder', (0.095, 0.0, 0.02), ALUMINIUM, 'dark', (0.0, 0.0, 0.01)),
+            tube(0.06, 0.054, 0.02, 0.16),
+            motor(0.05, 0.10, (0.0, 0.0, 0.11)),
+        ),
+    ),
+    Link('shoulder', (tube(0.06, 0.054, 0.0, 0.12), motor(0.05, 0.10, (0.0, 0.0, 0.17), ALONG_Y))),
+    Link('upper_arm', (tube(0.052, 0.047, 0.05, 0.16), motor(0.045, 0.09, (0.0, 0.0, 0.115)))),
+    Link('elbow', (tube(0.05, 0.046, 0.0, 0.105), motor(0.045, 0.09, (0.0, 0.0, 0.15), ALONG_Y))),
+    Link('forearm', (tube(0.042, 0.038, 0.045, 0.20), motor(0.035, 0.075, (0.0, 0.0, 0.1625)))),
+    Link(
+        'wrist', (tube(0.042, 0.038, 0.0, 0.135), motor(0.035, 0.075, (0.0, 0.0, 0.17), ALONG_Y))
+    ),
+    Link(
+        'hand_offset',
+        (
+            Part('box', (0.13, 0.06, 0.02), ALUMINIUM, 'white', (0.03, 0.0, 0.045)),
+            motor(0.035, 0.075, (0.06, 0.0, 0.0925)),
+        ),
+    ),
+    Link(
+        'wrist_disc',
+        (Part('cylinder', (0.036, 0.0, 0.02), ALUMINIUM, 'orange', (0.0, 0.0, 0.01)),),
+    ),
+    Link(
+        'flange', (Part('cylinder', (0.0315, 0.01, 0.02), ALUMINIUM, 'white', (0.0, 0.0, 0.01)),)
+    ),
+    Link('hand', (Part('box', (0.05, 0.13, 0.07), HAND_MIXTURE, 'dark', (0.0, 0.0, 0.035)),)),
+    Link(
+        'left_finger', (Part('box', (0.02, 0.014, 0.06), ALUMINIUM, 'orange', (0.0, 0.007, 0.03)),)
+    ),
+    Link(
+        'right_finger',
+        (Part('box', (0.02, 0.014, 0.06), ALUMINIUM, 'orange', (0.0, -0.007, 0.03)),),
+    ),
     Link('tool_center', ()),
 )
 
 Y_AXIS = (0.0, 1.0, 0.0)
 
 JOINTS = (
-    Joint('shoulder_yaw', 'revolute', 'base', 'shoulder', (0.0, 0.0, 0.16),
-          limits=(-2.8, 2.8, 90.0, 2.2), damping=5.0),
-    Joint('shoulder_pitch', 'revolute', 'shoulder', 'upper_arm', (0.0, 0.0, 0.17),
-          Y_AXIS, (-2.1, 2.1, 90.0, 2.2), 5.0),
-    Joint('upper_arm_roll', 'revolute', 'upper_arm', 'elbow', (0.0, 0.0, 0.16),
-          limits=(-2.8, 2.8, 90.0, 2.2), damping=4.0),
-    Joint('elbow_pitch', 'revolute', 'elbow', 'forearm', (0.0, 0.0, 0.15),
-          Y_AXIS, (-2.4, 2.4, 90.0, 2.2), 4.0),
-    Joint('forearm_roll', 'revolute', 'forearm', 'wrist', (0.0, 0.0, 0.20),
-          limits=(-2.8, 2.8, 30.0, 2.6), damping=1.0),
-    Joint('wrist_pitch', 'revolute', 'wrist', 'hand_offset', (0.0, 0.0, 0.17),
-          Y_AXIS, (-2.0, 2.0, 30.0, 2.6), 1.0),
-    Joint('wrist_roll', 'revolute', 'hand_offset', 'wrist_disc', (0.06, 0.0, 0.13),
-          limits=(-2.9, 2.9, 12.0, 2.6), damping=0.5),
+    Joint(
+        'shoulder_yaw',
+        'revolute',
+        'base',
+        'shoulder',
+        (0.0, 0.0, 0.16),
+        limits=(-2.8, 2.8, 90.0, 2.2),
+        damping=5.0,
+    ),
+    Joint(
+        'shoulder_pitch',
+        'revolute',
+        'shoulder',
+        'upper_arm',
+        (0.0, 0.0, 0.17),
+        Y_AXIS,
+        (-2.1, 2.1, 90.0, 2.2),
+        5.0,
+    ),
+    Joint(
+        'upper_arm_roll',
+        'revolute',
+        'upper_arm',
+        'elbow',
+        (0.0, 0.0, 0.16),
+        limits=(-2.8, 2.8, 90.0, 2.2),
+        damping=4.0,
+    ),
+    Joint(
+        'elbow_pitch',
+        'revolute',
+        'elbow',
+        'forearm',
+        (0.0, 0.0, 0.15),
+        Y_AXIS,
+        (-2.4, 2.4, 90.0, 2.2),
+        4.0,
+    ),
+    Joint(
+        'forearm_roll',
+        'revolute',
+        'forearm',
+        'wrist',
+        (0.0, 0.0, 0.20),
+        limits=(-2.8, 2.8, 30.0, 2.6),
+        damping=1.0,
+    ),
+    Joint(
+        'wrist_pitch',
+        'revolute',
+        'wrist',
+        'hand_offset',
+        (0.0, 0.0, 0.17),
+        Y_AXIS,
+        (-2.0, 2.0, 30.0, 2.6),
+        1.0,
+    ),
+    Joint(
+        'wrist_roll',
+        'revolute',
+        'hand_offset',
+        'wrist_disc',
+        (0.06, 0.0, 0.13),
+        limits=(-2.9, 2.9, 12.0, 2.6),
+        damping=0.5,
+    ),
     Joint('wrist_disc_to_flange', 'fixed', 'wrist_disc', 'flange', (0.0, 0.0, 0.02)),
     Joint('flange_to_hand', 'fixed', 'flange', 'hand', (0.0, 0.0, 0.02)),
-    Joint('left_finger_slide', 'prismatic', 'hand', 'left_finger', (0.0, 0.0, 0.07),
-          Y_AXIS, (0.0, 0.04, 40.0, 0.2), 10.0),
-    Joint('right_finger_slide', 'prismatic', 'hand', 'right_finger', (0.0, 0.0, 0.07),
-          (0.0, -1.0, 0.0), (0.0, 0.04, 40.0, 0.2), 10.0, mimic='left_finger_slide'),
+    Joint(
+        'left_finger_slide',
+        'prismatic',
+        'hand',
+        'left_finger',
+        (0.0, 0.0, 0.07),
+        Y_AXIS,
+        (0.0, 0.04, 40.0, 0.2),
+        10.0,
+    ),
+    Joint(
+        'right_finger_slide',
+        'prismatic',
+        'hand',
+        'right_finger',
+        (0.0, 0.0, 0.07),
+        (0.0, -1.0, 0.0),
+        (0.0, 0.04, 40.0, 0.2),
+        10.0,
+        mimic='left_finger_slide',
+    ),
     Joint('hand_to_tool_center', 'fixed', 'hand', 'tool_center', (0.0, 0.0, 0.12)),
 )
 
@@ -270,8 +328,11 @@ def add_inertial(element: ET.Element, parts: tuple[Part, ...]) -> None:
     inertial = ET.SubElement(element, 'inertial')
     ET.SubElement(inertial, 'origin', xyz=numbers(com), rpy=numbers(rpy))
     ET.SubElement(inertial, 'mass', value=number(mass))
-    ET.SubElement(inertial, 'inertia', {
-        f'i{"xyz"[i]}{"xyz"[j]}': number(moments[i, j]) for i in range(3) for j in range(i, 3)})
+    ET.SubElement(
+        inertial,
+        'inertia',
+        {f'i{"xyz"[i]}{"xyz"[j]}': number(moments[i, j]) for i in range(3) for j in range(i, 3)},
+    )
 
 
 def add_visual(element: ET.Element, part: Part) -> None:
@@ -282,8 +343,9 @@ def add_visual(element: ET.Element, part: Part) -> None:
     if part.shape == 'box':
         ET.SubElement(geometry, 'box', size=numbers(part.size))
     else:
-        ET.SubElement(geometry, 'cylinder', radius=number(part.size[0]),
-                      length=number(part.size[2]))
+        ET.SubElement(
+            geometry, 'cylinder', radius=number(part.size[0]), length=number(part.size[2])
+        )
     ET.SubElement(visual, 'material', name=part.color)
 
 

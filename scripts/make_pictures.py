@@ -26,6 +26,7 @@ def floating():
     from dynamics_node.ros.demo.demo import isolate, perform
     from pictures import floating, rendering
     from rich.console import Console
+
     isolate()
     try:  # before the run, which takes half a minute
         rendering.ArmRenderer(ARM7, 8, 8, (0.0, 0.0, 0.0), 1.0).close()
@@ -43,6 +44,7 @@ def workspace():
     """Compute and draw the workspace."""
     from dynamics_node import RobotModel
     from pictures import workspace
+
     robot = RobotModel.from_urdf(ARM7)
     robot.specialise(loads=True)
     workspace.draw(robot, DOCS / 'workspace.png')
@@ -51,26 +53,35 @@ def workspace():
 def report():
     """Take a picture of the report's page."""
     from pictures import report_page
+
     report_page.draw(ARM7, DOCS / 'report_page.png')
 
 
 def benchmarks():
     """Draw the first table of the benchmarks."""
     from pictures import benchmarks
-    benchmarks.draw((DOCS / 'benchmarks.md').read_text(encoding='utf-8'),
-                    DOCS / 'benchmarks_short.png')
+
+    benchmarks.draw(
+        (DOCS / 'benchmarks.md').read_text(encoding='utf-8'), DOCS / 'benchmarks_short.png'
+    )
 
 
-PICTURES = {'floating': floating, 'workspace': workspace, 'report': report,
-            'benchmarks': benchmarks}
+PICTURES = {
+    'floating': floating,
+    'workspace': workspace,
+    'report': report,
+    'benchmarks': benchmarks,
+}
 
 
 def main(names):
     """Draw the pictures of these names, or all."""
     unknown = set(names) - set(PICTURES)
     if unknown:
-        sys.exit(f'make_pictures: expected names out of {", ".join(PICTURES)}, got '
-                 f'{", ".join(sorted(unknown))}')
+        sys.exit(
+            f'make_pictures: expected names out of {", ".join(PICTURES)}, got '
+            f'{", ".join(sorted(unknown))}'
+        )
     for name in names or PICTURES:
         PICTURES[name]()
         print(f'drawn: {name}')

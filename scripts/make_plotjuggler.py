@@ -73,11 +73,23 @@ def layout(names, namespace=''):
     root = ET.Element('root')
     root.append(ET.Comment(COMMENT))
     window = ET.SubElement(root, 'tabbed_widget', name='Main Window', parent='main_window')
-    _tab(window, 'all joints', [
-        (topic.rpartition('/')[2].replace('_', ' '),
-         [_curve(topic, name) for name in names], COLOURS) for topic in topics])
-    _tab(window, 'joint by joint', [
-        (name, [_curve(topic, name) for topic in topics], COLOURS) for name in names])
+    _tab(
+        window,
+        'all joints',
+        [
+            (
+                topic.rpartition('/')[2].replace('_', ' '),
+                [_curve(topic, name) for name in names],
+                COLOURS,
+            )
+            for topic in topics
+        ],
+    )
+    _tab(
+        window,
+        'joint by joint',
+        [(name, [_curve(topic, name) for topic in topics], COLOURS) for name in names],
+    )
     ET.SubElement(window, 'currentTabIndex', index='0')
     ET.SubElement(root, 'use_relative_time_offset', enabled='1')
     ET.SubElement(root, 'streaming_buffer_size', value='30')
@@ -104,16 +116,29 @@ def _tab(window, name, plots):
 
 
 def _splitter(parent, orientation, count):
-    return ET.SubElement(parent, 'DockSplitter', orientation=orientation, count=str(count),
-                         sizes=';'.join([f'{1 / count:.6g}'] * count))
+    return ET.SubElement(
+        parent,
+        'DockSplitter',
+        orientation=orientation,
+        count=str(count),
+        sizes=';'.join([f'{1 / count:.6g}'] * count),
+    )
 
 
 def _plot(parent, title, curves, colours):
     area = ET.SubElement(parent, 'DockArea', name=title)
-    plot = ET.SubElement(area, 'plot', mode='TimeSeries', style='Lines', line_width='1.0',
-                         flip_x='false', flip_y='false')
-    ET.SubElement(plot, 'range', left='0.000000', right='30.000000', bottom='-1.000000',
-                  top='1.000000')
+    plot = ET.SubElement(
+        area,
+        'plot',
+        mode='TimeSeries',
+        style='Lines',
+        line_width='1.0',
+        flip_x='false',
+        flip_y='false',
+    )
+    ET.SubElement(
+        plot, 'range', left='0.000000', right='30.000000', bottom='-1.000000', top='1.000000'
+    )
     ET.SubElement(plot, 'limitY')
     for i, curve in enumerate(curves):
         ET.SubElement(plot, 'curve', name=curve, color=colours[i % len(colours)])
@@ -121,10 +146,14 @@ def _plot(parent, title, curves, colours):
 
 def _plugins(root, topics):
     plugin = ET.SubElement(ET.SubElement(root, 'Plugins'), 'plugin', ID=STREAMER)
-    for name, value in (('use_header_stamp', 'true'), ('discard_large_arrays', 'true'),
-                        ('max_array_size', '100'), ('boolean_strings_to_number', 'true'),
-                        ('remove_suffix_from_strings', 'true'),
-                        ('selected_topics', ';'.join(topics))):
+    for name, value in (
+        ('use_header_stamp', 'true'),
+        ('discard_large_arrays', 'true'),
+        ('max_array_size', '100'),
+        ('boolean_strings_to_number', 'true'),
+        ('remove_suffix_from_strings', 'true'),
+        ('selected_topics', ';'.join(topics)),
+    ):
         ET.SubElement(plugin, name, value=value)
     ET.SubElement(root, 'previouslyLoaded_Streamer', name=STREAMER)
 

@@ -27,11 +27,15 @@ FOLDER = ROOT / 'config' / 'robots'
 # Of the largest gravity torque; and at least this part of what the URDF allows.
 MARGIN, LEAST = 1.25, 0.05
 
-COMPENSATES = ('THE REAL ARM COMPENSATES GRAVITY ITSELF: never enable the output there, it would',
-               'be pushed up (docs/arms.md). Use the services and ~/gravity_torque.')
-UNKNOWN = ('Whether the real arm compensates gravity below its effort interface was not found',
-           'out: command zero effort and let it go gently before you enable anything',
-           '(docs/arms.md).')
+COMPENSATES = (
+    'THE REAL ARM COMPENSATES GRAVITY ITSELF: never enable the output there, it would',
+    'be pushed up (docs/arms.md). Use the services and ~/gravity_torque.',
+)
+UNKNOWN = (
+    'Whether the real arm compensates gravity below its effort interface was not found',
+    'out: command zero effort and let it go gently before you enable anything',
+    '(docs/arms.md).',
+)
 
 
 @dataclass(frozen=True)
@@ -44,12 +48,14 @@ class Arm:
 
 
 ARMS = {
-    'arm7': Arm('the arm of this repository', '', ('There is no real one: it was designed for the '
-                                                  'demo.',)),
+    'arm7': Arm(
+        'the arm of this repository', '', ('There is no real one: it was designed for the demo.',)
+    ),
     'ur5': Arm('Universal Robots UR5', 'ur_description/urdf/ur5_robot.urdf', COMPENSATES),
     'panda': Arm('Franka Panda with its hand', 'panda_description/urdf/panda.urdf', COMPENSATES),
-    'kinova_j2s6s200': Arm('Kinova Jaco (Gen2, 6 joints)',
-                           'kinova_description/robots/kinova.urdf', COMPENSATES),
+    'kinova_j2s6s200': Arm(
+        'Kinova Jaco (Gen2, 6 joints)', 'kinova_description/robots/kinova.urdf', COMPENSATES
+    ),
     'xarm7': Arm('UFACTORY xArm7', 'xarm_description/urdf/xarm7.urdf', UNKNOWN),
     'z1': Arm('Unitree Z1 with its gripper', 'z1_description/urdf/z1.urdf', UNKNOWN),
 }

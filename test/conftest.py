@@ -10,9 +10,12 @@ from support.domains import claim
 # HYPOTHESIS_EXAMPLES=5000 make test ARGS=test/dynamics
 # How long an example takes depends on what else runs here, and is not what they judge.
 settings.register_profile(
-    'here', derandomize=bool(os.environ.get('CI')), deadline=None,
+    'here',
+    derandomize=bool(os.environ.get('CI')),
+    deadline=None,
     suppress_health_check=[HealthCheck.too_slow],
-    max_examples=int(os.environ.get('HYPOTHESIS_EXAMPLES', settings.default.max_examples)))
+    max_examples=int(os.environ.get('HYPOTHESIS_EXAMPLES', settings.default.max_examples)),
+)
 settings.load_profile('here')
 
 
@@ -42,15 +45,18 @@ def own_domain():
 
 # Both only with pytest-xdist, as scripts/test.sh starts it.
 
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
     if config.getvalue('dist') != 'load':
         return None  # somebody wants it otherwise
     from support.schedule import Schedule
+
     return Schedule(config, log)
 
 
 def pytest_collection_modifyitems(items):
     if 'PYTEST_XDIST_WORKER' in os.environ:
         from support.schedule import in_order
+
         items[:] = [items[place] for place in in_order([item.nodeid for item in items])]

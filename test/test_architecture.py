@@ -52,7 +52,7 @@ def own_rooms(path):
         if level == 0:
             assert not name.startswith('dynamics_node'), f'{path}: relative imports inside'
             continue
-        target = (*here[:len(here) - level + 1], *name.split('.'))
+        target = (*here[: len(here) - level + 1], *name.split('.'))
         yield target[0]
 
 
@@ -65,8 +65,11 @@ def test_every_file_imports_only_what_its_room_may(path):
         assert other == room or other in STREET[room], f'{path}: imports {other}'
     if room != 'ros':
         outside = {name.split('.')[0] for level, name in imported(path) if level == 0}
-        shown = {name for start, name in SHOWING.items()
-                 if path.relative_to(PACKAGE).as_posix().startswith(start)}
+        shown = {
+            name
+            for start, name in SHOWING.items()
+            if path.relative_to(PACKAGE).as_posix().startswith(start)
+        }
         unknown = outside - LIBRARY - shown - set(sys.stdlib_module_names)
         assert not unknown, f'{path}: imports {unknown}'
 
@@ -77,19 +80,26 @@ def test_the_simulated_robot_knows_nothing_of_the_library():
 
 
 def test_the_library_works_where_no_ros_is_installed():
-    code = ('import sys\n'
-            'class Refuse:\n'
-            '    def find_spec(self, name, path=None, target=None):\n'
-            '        if name.split(".")[0] in ("rclpy", "dynamics_interfaces", "std_msgs"):\n'
-            '            raise ImportError(name)\n'
-            'sys.meta_path.insert(0, Refuse())\n'
-            'import dynamics_node\n'
-            f'robot = dynamics_node.RobotModel.from_urdf({str(PACKAGE.parent)!r}\n'
-            '    "/config/robots/pendulum.urdf")\n'
-            'print(robot.gravity_torque([0.0]))\n'
-            'assert not any(name.startswith("rclpy") for name in sys.modules)\n')
-    run = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
-                         cwd=PACKAGE.parent, check=False)
+    code = (
+        'import sys\n'
+        'class Refuse:\n'
+        '    def find_spec(self, name, path=None, target=None):\n'
+        '        if name.split(".")[0] in ("rclpy", "dynamics_interfaces", "std_msgs"):\n'
+        '            raise ImportError(name)\n'
+        'sys.meta_path.insert(0, Refuse())\n'
+        'import dynamics_node\n'
+        f'robot = dynamics_node.RobotModel.from_urdf({str(PACKAGE.parent)!r}\n'
+        '    "/config/robots/pendulum.urdf")\n'
+        'print(robot.gravity_torque([0.0]))\n'
+        'assert not any(name.startswith("rclpy") for name in sys.modules)\n'
+    )
+    run = subprocess.run(
+        [sys.executable, '-c', code],
+        capture_output=True,
+        text=True,
+        cwd=PACKAGE.parent,
+        check=False,
+    )
     assert run.returncode == 0, run.stderr
     assert run.stdout.startswith('[10.3')
 

@@ -41,19 +41,25 @@ def inertials(robot):
         if inertial is None:
             continue
         get = inertial.find('inertia').get
-        tensor = np.array([[float(get('i' + ''.join(sorted(a + b)))) for b in 'xyz']
-                           for a in 'xyz'])
+        tensor = np.array(
+            [[float(get('i' + ''.join(sorted(a + b)))) for b in 'xyz'] for a in 'xyz']
+        )
         rpy = [float(x) for x in inertial.find('origin').get('rpy').split()]
         turn = pinocchio.rpy.rpyToMatrix(*rpy)
         com = np.array([float(x) for x in inertial.find('origin').get('xyz').split()])
-        yield (link.get('name'), float(inertial.find('mass').get('value')), com,
-               turn @ tensor @ turn.T)
+        yield (
+            link.get('name'),
+            float(inertial.find('mass').get('value')),
+            com,
+            turn @ tensor @ turn.T,
+        )
 
 
 def test_the_file_is_exactly_what_the_generator_writes(generator):
     """Nobody has edited it by hand."""
     assert ARM7.read_text(encoding='utf-8') == generator.arm7_urdf(), (
-        'config/robots/arm7.urdf differs from its generator: run python3 scripts/make_arm7.py')
+        'config/robots/arm7.urdf differs from its generator: run python3 scripts/make_arm7.py'
+    )
 
 
 def test_every_inertial_belongs_to_a_possible_body(robot):
@@ -115,8 +121,9 @@ def test_size_and_mass_are_those_of_a_research_arm(model):
     """About 0.85 m from shoulder to flange, 18 to 20 kg."""
     data = model.createData()
     pinocchio.framesForwardKinematics(model, data, pinocchio.neutral(model))
-    shoulder, hand = (data.oMf[model.getFrameId(name)].translation
-                      for name in ('upper_arm', 'hand'))
+    shoulder, hand = (
+        data.oMf[model.getFrameId(name)].translation for name in ('upper_arm', 'hand')
+    )
     assert np.linalg.norm(hand - shoulder) == pytest.approx(0.85, abs=0.01)
     assert 18.0 < sum(inertia.mass for inertia in model.inertias) < 20.0
 
@@ -124,8 +131,11 @@ def test_size_and_mass_are_those_of_a_research_arm(model):
 def test_it_has_the_cases_that_a_reader_of_urdf_must_know(robot):
     """An inertial that is turned, fixed links inside and at the end, a mimic joint, no mesh."""
     assert any(origin.get('rpy') != '0 0 0' for origin in robot.findall('link/inertial/origin'))
-    fixed = {joint.find('child').get('link') for joint in robot.findall('joint')
-             if joint.get('type') == 'fixed'}
+    fixed = {
+        joint.find('child').get('link')
+        for joint in robot.findall('joint')
+        if joint.get('type') == 'fixed'
+    }
     parents = {joint.find('parent').get('link') for joint in robot.findall('joint')}
     assert fixed & parents and fixed - parents
     assert robot.find('joint/mimic').get('multiplier') == '1'

@@ -13,11 +13,30 @@ from support.robots import ROBOTS
 
 ROOT = ROBOTS.parents[1]
 QUANTITIES = ('dynamics', 'mass_matrix', 'gravity', 'inverse', 'forward')
-TITLES = ['### D, C and G', '### D', '### G', '### Inverse dynamics, q̈ → τ',
-          '### Forward dynamics, τ → q̈']
+TITLES = [
+    '### D, C and G',
+    '### D',
+    '### G',
+    '### Inverse dynamics, q̈ → τ',
+    '### Forward dynamics, τ → q̈',
+]
 SIZES = (2, 4, 8)
-MODULES = ('agreement', 'generated', 'growth', 'numbers', 'plot', 'report', 'rivals', 'robots',
-           'run', 'sections', 'single_call', 'tables', 'timing', 'rivals.pinocchio')
+MODULES = (
+    'agreement',
+    'generated',
+    'growth',
+    'numbers',
+    'plot',
+    'report',
+    'rivals',
+    'robots',
+    'run',
+    'sections',
+    'single_call',
+    'tables',
+    'timing',
+    'rivals.pinocchio',
+)
 
 
 @pytest.fixture(scope='module')
@@ -25,16 +44,23 @@ def bench():
     # Only for the import: the root holds folders, such as launch, that must not hide packages.
     sys.path.insert(0, str(ROOT))
     try:
-        return SimpleNamespace(**{name.rpartition('.')[2]: import_module(f'benchmarks.{name}')
-                                  for name in MODULES})
+        return SimpleNamespace(
+            **{name.rpartition('.')[2]: import_module(f'benchmarks.{name}') for name in MODULES}
+        )
     finally:
         sys.path.remove(str(ROOT))
 
 
 @pytest.fixture(scope='module')
 def results(bench):
-    return bench.run.run(rounds=2, batch_count=500, sizes=SIZES, names=('pinocchio', 'mujoco'),
-                         with_sections=False, say=lambda text: None)
+    return bench.run.run(
+        rounds=2,
+        batch_count=500,
+        sizes=SIZES,
+        names=('pinocchio', 'mujoco'),
+        with_sections=False,
+        say=lambda text: None,
+    )
 
 
 def tables_of(report):
@@ -46,15 +72,19 @@ def tables_of(report):
             heading = line
         elif line.startswith('|') and not line.startswith('|---'):
             sections.setdefault(heading, []).append(
-                [cell.strip() for cell in line.strip('|').split('|')])
+                [cell.strip() for cell in line.strip('|').split('|')]
+            )
     return sections
 
 
 def test_every_library_is_measured_for_every_quantity_on_every_arm(results):
     measured = {(row.robot, row.quantity, row.library) for row in results.single}
-    assert measured == {(robot, quantity, library)
-                        for robot in ('UR5', 'Panda', 'arm7') for quantity in QUANTITIES
-                        for library in ('dynamics_node', 'Pinocchio', 'MuJoCo')}
+    assert measured == {
+        (robot, quantity, library)
+        for robot in ('UR5', 'Panda', 'arm7')
+        for quantity in QUANTITIES
+        for library in ('dynamics_node', 'Pinocchio', 'MuJoCo')
+    }
     assert results.refused == [] and results.missing == {}
     for row in results.single:
         assert len(row.seconds) == len(row.ours) == 2 and min(row.seconds) > 0.0
@@ -69,13 +99,20 @@ def test_the_report_has_every_table_and_every_row(bench, results):
         assert [row[0] for row in rows] == ['dynamics_node', 'Pinocchio', 'MuJoCo']
         assert '–' not in {cell for row in rows for cell in row}
     assert [row[0] for row in tables['## Many states at once'][1:]] == [
-        'dynamics_node', 'dynamics_node, fresh arrays', 'dynamics_node',
-        'dynamics_node, fresh arrays', 'Pinocchio']
+        'dynamics_node',
+        'dynamics_node, fresh arrays',
+        'dynamics_node',
+        'dynamics_node, fresh arrays',
+        'Pinocchio',
+    ]
     assert [row[0] for row in tables['## Growth with the number of joints'][1:]] == [
-        *map(str, SIZES), 'exponent']
+        *map(str, SIZES),
+        'exponent',
+    ]
     facts = dict(row for row in tables['# Benchmarks'] if len(row) == 2)
-    assert {'CPU', 'system', 'Python', 'commit', 'numpy', 'numba', 'Pinocchio',
-            'MuJoCo'} <= set(facts)
+    assert {'CPU', 'system', 'Python', 'commit', 'numpy', 'numba', 'Pinocchio', 'MuJoCo'} <= set(
+        facts
+    )
     assert all(facts[name] for name in facts if name != 'measured on')
 
 
@@ -91,8 +128,10 @@ def test_no_measured_number_is_typed_in(bench, results):
         for values in row.ours.values():
             values[:] = [value * rng.uniform(5.0, 6.0) for value in values]
         row.cores_used[:] = [value * 1.5 for value in row.cores_used]
-    changed.memory = {'result': 17 * results.memory['result'],
-                      'besides': 17 * results.memory['besides'] + 12345678}
+    changed.memory = {
+        'result': 17 * results.memory['result'],
+        'besides': 17 * results.memory['besides'] + 12345678,
+    }
     before = tables_of(bench.report.render(results, 'picture.png'))
     after = tables_of(bench.report.render(changed, 'picture.png'))
     measured = [*TITLES, '## Many states at once', '## Growth with the number of joints']
@@ -108,8 +147,10 @@ def test_no_measured_number_is_typed_in(bench, results):
                 count += 1
     assert count > 60
     sentence = re.compile(r'Memory of our call:.*')
-    assert (sentence.search(bench.report.render(results, ''))[0]
-            != sentence.search(bench.report.render(changed, ''))[0])
+    assert (
+        sentence.search(bench.report.render(results, ''))[0]
+        != sentence.search(bench.report.render(changed, ''))[0]
+    )
 
 
 def test_the_plot_is_drawn(bench, results, tmp_path):
@@ -129,14 +170,18 @@ def test_a_library_with_other_numbers_is_refused_and_not_timed(bench):
     rows, refused = bench.single_call.measure([robot], {'wrong': rival}, 1, lambda text: None)
     assert {row.library for row in rows} == {'dynamics_node'}
     [sentence] = refused
-    assert re.fullmatch('wrong, arm7, G: G: expected a difference of at most 1e-08 of the '
-                        'largest element, got 1e-07', sentence)
+    assert re.fullmatch(
+        'wrong, arm7, G: G: expected a difference of at most 1e-08 of the '
+        'largest element, got 1e-07',
+        sentence,
+    )
 
 
 def test_not_a_number_is_refused(bench):
     robot = bench.robots.arm7()
     nan = bench.pinocchio.calls(robot)['gravity'].__class__(
-        lambda q: (np.full(7, np.nan),), ('G',), 'nan')
+        lambda q: (np.full(7, np.nan),), ('G',), 'nan'
+    )
     with pytest.raises(bench.agreement.DifferentResultError, match='got nan'):
         bench.agreement.check(robot, 'gravity', nan)
 
@@ -152,17 +197,27 @@ def test_a_library_that_is_not_installed_is_named_with_the_reason(bench, monkeyp
 def test_other_files_measure_their_sections(bench, monkeypatch, tmp_path):
     (tmp_path / 'good_section.py').write_text(
         '"""How it was measured."""\n\n\ndef measure():\n'
-        '    return [{"what": "round trip", "ms": 0.51234}]\n')
+        '    return [{"what": "round trip", "ms": 0.51234}]\n'
+    )
     (tmp_path / 'bad_section.py').write_text('def measure():\n    raise OSError("no network")\n')
     package = sys.modules['benchmarks']
     monkeypatch.setattr(package, '__path__', [*package.__path__, str(tmp_path)])
-    monkeypatch.setattr(bench.sections, 'PLACES', {
-        'good': ('Good', 'good_section'), 'bad': ('Bad', 'bad_section'),
-        'none': ('None', 'no_section')})
+    monkeypatch.setattr(
+        bench.sections,
+        'PLACES',
+        {
+            'good': ('Good', 'good_section'),
+            'bad': ('Bad', 'bad_section'),
+            'none': ('None', 'no_section'),
+        },
+    )
     sections = bench.sections.measure(say=lambda text: None)
     assert sections['good'].text == 'How it was measured.'
     assert bench.tables.section_table(sections['good']).splitlines() == [
-        '| what | ms |', '|---|---|', '| round trip | 0.512 |']
+        '| what | ms |',
+        '|---|---|',
+        '| round trip | 0.512 |',
+    ]
     assert sections['bad'].text == 'Not measured: OSError: no network'
     assert sections['none'].text == 'Not measured: there is no benchmarks/no_section.py.'
     for name in ('good_section', 'bad_section'):
@@ -188,10 +243,12 @@ def test_ratios_are_those_of_the_same_round(bench):
 
 def test_rounds_are_interleaved_and_begin_with_another_candidate(bench, monkeypatch):
     order = []
-    monkeypatch.setattr(bench.timing, 'time_of',
-                        lambda function, arguments, count: order.append(function()) or 1.0)
-    samples = bench.timing.interleaved({name: ((lambda *_, name=name: name), [()])
-                                        for name in 'ab'}, rounds=7, slow_rounds=3)
+    monkeypatch.setattr(
+        bench.timing, 'time_of', lambda function, arguments, count: order.append(function()) or 1.0
+    )
+    samples = bench.timing.interleaved(
+        {name: ((lambda *_, name=name: name), [()]) for name in 'ab'}, rounds=7, slow_rounds=3
+    )
     # One call each to see how long it takes, then rounds; a call of 1 s is a slow one.
     assert ''.join(order) == 'ab' + 'ab' + 'ba' + 'ab'
     assert samples == {'a': [1.0] * 3, 'b': [1.0] * 3}
@@ -205,13 +262,15 @@ def test_a_slow_library_is_divided_by_ours_of_the_same_rounds(bench, monkeypatch
     def measured(candidates, rounds, slow_rounds):
         assert rounds == next(turns)
         mine = [float(next(clock)) for _ in range(rounds)]
-        return {name: mine if name == 'dynamics_node' else mine[:slow_rounds]
-                for name in candidates}
+        return {
+            name: mine if name == 'dynamics_node' else mine[:slow_rounds] for name in candidates
+        }
 
     monkeypatch.setattr(bench.single_call, 'interleaved', measured)
     monkeypatch.setattr(bench.single_call, 'QUANTITIES', {'gravity': 'G'})
-    rows, _ = bench.single_call.measure([bench.robots.arm7()], {'pinocchio': bench.pinocchio}, 7,
-                                        say=lambda text: None)
+    rows, _ = bench.single_call.measure(
+        [bench.robots.arm7()], {'pinocchio': bench.pinocchio}, 7, say=lambda text: None
+    )
     assert [row.seconds for row in rows] == [[0, 1, 2, 3, 4, 5, 6], [0, 1, 3, 4, 5, 6]]
     assert rows[1].ours == rows[1].seconds
 
@@ -224,9 +283,12 @@ def test_the_collector_is_off_while_the_clock_runs(bench):
 
 def test_the_exponent_is_the_slope_of_a_power_law(bench):
     # Rounds of different speed, the last one disturbed: the median is that of the power law.
-    rows = [bench.growth.GrowthRow('chain', joints, 'x', [
-        1e-6 * joints ** 1.5, 3e-6 * joints ** 1.5, 1e-6 * joints ** 2.5], [])
-        for joints in (2, 4, 8, 16)]
+    rows = [
+        bench.growth.GrowthRow(
+            'chain', joints, 'x', [1e-6 * joints**1.5, 3e-6 * joints**1.5, 1e-6 * joints**2.5], []
+        )
+        for joints in (2, 4, 8, 16)
+    ]
     spread = bench.growth.exponent(rows, 'chain', 'x')
     assert (spread.median, spread.low, spread.high) == pytest.approx((1.5, 1.5, 2.0))
     assert bench.growth.exponent(rows[:1], 'chain', 'x') is None
@@ -244,8 +306,16 @@ def test_generated_robots_have_the_shape_that_they_are_named_after(bench, shape,
     bench.pinocchio.model_of(robot)
 
 
-@pytest.mark.parametrize('seconds, text', [
-    (1.234e-6, '1.23 µs'), (0.00012345, '123 µs'), (2.0, '2 s'), (0.5, '500 ms'),
-    (3.21e-10, '0.321 ns'), (1234.0, '1230 s')])
+@pytest.mark.parametrize(
+    'seconds, text',
+    [
+        (1.234e-6, '1.23 µs'),
+        (0.00012345, '123 µs'),
+        (2.0, '2 s'),
+        (0.5, '500 ms'),
+        (3.21e-10, '0.321 ns'),
+        (1234.0, '1230 s'),
+    ],
+)
 def test_times_have_three_digits_and_a_unit(bench, seconds, text):
     assert bench.numbers.time_text(seconds) == text

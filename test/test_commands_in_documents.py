@@ -16,30 +16,52 @@ sys.path.insert(0, str(ROOT / 'scripts'))
 
 from reference import graph, launch_files
 
-SOURCES = [*DOCUMENTS, *sorted((ROOT / 'config').rglob('*.yaml')),
-           *sorted((ROOT / 'launch').glob('*.py'))]
+SOURCES = [
+    *DOCUMENTS,
+    *sorted((ROOT / 'config').rglob('*.yaml')),
+    *sorted((ROOT / 'launch').glob('*.py')),
+]
 BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 OF_THE_GUARD = {parameter.name: parameter for parameter in GUARD_PARAMETERS}
-TOPICS = {entry.name.replace('~', '/dynamics_node')
-          for entry in graph.SUBSCRIBED + graph.PUBLISHED} | {
-    entry.name.replace('~', '/effort_guard') for entry in graph.EFFORT_GUARD}
+TOPICS = {
+    entry.name.replace('~', '/dynamics_node') for entry in graph.SUBSCRIBED + graph.PUBLISHED
+} | {entry.name.replace('~', '/effort_guard') for entry in graph.EFFORT_GUARD}
 # Of other packages, in the versions of Jazzy; their arguments are theirs.
-OTHER_PROGRAMS = {'plotjuggler': {'plotjuggler'},
-                  'controller_manager': {'ros2_control_node', 'spawner'},
-                  'robot_state_publisher': {'robot_state_publisher'},
-                  'mass_matrix_client': {'mass_matrix_client'}}
-VERBS = {'bag play', 'bag record', 'service call', 'pkg prefix', 'topic echo', 'topic info',
-         'param get', 'param set', 'interface show', 'run', 'launch',
-         'control switch_controllers', 'control load_controller', 'control list_controllers',
-         'security create_keystore', 'security create_enclave', 'security create_permission'}
+OTHER_PROGRAMS = {
+    'plotjuggler': {'plotjuggler'},
+    'controller_manager': {'ros2_control_node', 'spawner'},
+    'robot_state_publisher': {'robot_state_publisher'},
+    'mass_matrix_client': {'mass_matrix_client'},
+}
+VERBS = {
+    'bag play',
+    'bag record',
+    'service call',
+    'pkg prefix',
+    'topic echo',
+    'topic info',
+    'param get',
+    'param set',
+    'interface show',
+    'run',
+    'launch',
+    'control switch_controllers',
+    'control load_controller',
+    'control list_controllers',
+    'security create_keystore',
+    'security create_enclave',
+    'security create_permission',
+}
 
 
 def commands(beginning):
     """Return (document, rest of the line) of every command that begins so."""
     pattern = re.compile(rf'(?:^ +|`|^#? +|\$ |: )({re.escape(beginning)} [^`\n]*)', re.M)
-    return [(name_of(path), match.removeprefix(beginning).strip())
-            for path in SOURCES
-            for match in pattern.findall(path.read_text().replace('\\\n', ' '))]
+    return [
+        (name_of(path), match.removeprefix(beginning).strip())
+        for path in SOURCES
+        for match in pattern.findall(path.read_text().replace('\\\n', ' '))
+    ]
 
 
 RUN, LAUNCH = commands('ros2 run'), commands('ros2 launch')
@@ -81,7 +103,8 @@ def test_a_launch_file_exists_with_its_arguments(document, words):
     assert package == 'dynamics_node'
     _, known = launch_files.read(ROOT / 'launch' / file)
     assert {argument.split(':=')[0].rstrip(':') for argument in arguments if ':=' in argument} <= {
-        argument.name for argument in known}
+        argument.name for argument in known
+    }
 
 
 @pytest.mark.parametrize(('document', 'words'), PARAMS)
@@ -89,7 +112,7 @@ def test_a_parameter_that_is_read_or_set_exists(document, words):
     verb, node, name, *value = words.split(maxsplit=3)
     assert verb in ('get', 'set') and node == '/dynamics_node'
     if value:
-        BY_NAME[name].check(yaml.safe_load(value[0].strip("'\"")))
+        BY_NAME[name].check(yaml.safe_load(value[0].strip('\'"')))
     assert name in BY_NAME
 
 
@@ -139,6 +162,7 @@ def test_no_other_verb_of_ros2_is_used():
 
 def test_all_commands_are_found():
     assert len(RUN) > 5 and len(LAUNCH) > 2 and len(MODULES) > 5 and len(MAKE) > 5
-    said = sum(len(re.findall(r'\bros2 launch dynamics_node \w', path.read_text()))
-               for path in SOURCES)
+    said = sum(
+        len(re.findall(r'\bros2 launch dynamics_node \w', path.read_text())) for path in SOURCES
+    )
     assert len(LAUNCH) == said

@@ -17,12 +17,24 @@ DISPLAYS = {display['Name']: display for display in MANAGER['Displays']}
 DOCUMENT = (ROOT / 'docs' / 'rviz.md').read_text()
 # As the plugins of RViz for ROS 2 (Jazzy) are registered, and as its properties are spelled.
 CLASSES = {'rviz_common/Displays', 'rviz_common/Views'} | {
-    f'rviz_default_plugins/{name}' for name in (
-        'Grid', 'RobotModel', 'MarkerArray', 'TF', 'Orbit', 'Interact', 'MoveCamera',
-        'FocusCamera', 'Measure')}
-QOS = {'Durability Policy': {'System Default', 'Transient Local', 'Volatile'},
-       'History Policy': {'System Default', 'Keep Last', 'Keep All'},
-       'Reliability Policy': {'System Default', 'Reliable', 'Best Effort'}}
+    f'rviz_default_plugins/{name}'
+    for name in (
+        'Grid',
+        'RobotModel',
+        'MarkerArray',
+        'TF',
+        'Orbit',
+        'Interact',
+        'MoveCamera',
+        'FocusCamera',
+        'Measure',
+    )
+}
+QOS = {
+    'Durability Policy': {'System Default', 'Transient Local', 'Volatile'},
+    'History Policy': {'System Default', 'Keep Last', 'Keep All'},
+    'Reliability Policy': {'System Default', 'Reliable', 'Best Effort'},
+}
 
 
 def every(node, key):
@@ -30,16 +42,19 @@ def every(node, key):
     if isinstance(node, dict):
         found = [node[key]] if key in node else []
         return found + [value for child in node.values() for value in every(child, key)]
-    return [value for child in node for value in every(child, key)] if isinstance(
-        node, list) else []
+    return (
+        [value for child in node for value in every(child, key)] if isinstance(node, list) else []
+    )
 
 
 def groups():
     """Return the groups of a picture in which nothing is missing."""
-    robot = RobotModel.from_urdf(re.sub(
-        r'ixx="[^"]*"', 'ixx="9"', ARM7.read_text(), count=3)).with_payload('hand', 1.0)
+    robot = RobotModel.from_urdf(
+        re.sub(r'ixx="[^"]*"', 'ixx="9"', ARM7.read_text(), count=3)
+    ).with_payload('hand', 1.0)
     shapes = Picture(robot.tree, robot.joint_names).shapes(
-        robot, robot.neutral_position, np.ones(8), np.ones(8), robot.effort_limits)
+        robot, robot.neutral_position, np.ones(8), np.ones(8), robot.effort_limits
+    )
     return {shape.group for shape in shapes}
 
 
@@ -49,9 +64,13 @@ def test_every_class_exists_in_rviz():
     assert {'rviz_default_plugins/MarkerArray', 'rviz_default_plugins/RobotModel'} <= classes
 
 
-@pytest.mark.parametrize(('display', 'key', 'topic'), [
-    ('Dynamics', 'Topic', '/dynamics_node/markers'),
-    ('Robot', 'Description Topic', '/robot_description')])
+@pytest.mark.parametrize(
+    ('display', 'key', 'topic'),
+    [
+        ('Dynamics', 'Topic', '/dynamics_node/markers'),
+        ('Robot', 'Description Topic', '/robot_description'),
+    ],
+)
 def test_topics_and_their_quality_of_service(display, key, topic):
     settings = DISPLAYS[display][key]
     assert settings['Value'] == topic

@@ -30,17 +30,22 @@ def started(path, are_viewers_installed=None, **arguments):
     from launch import LaunchContext
     from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction
     from launch_ros.actions import Node
+
     context, found = LaunchContext(), []
     context.launch_configurations.update(arguments)
     for entity in module.generate_launch_description().entities:
         if isinstance(entity, DeclareLaunchArgument):
             entity.visit(context)
         elif entity.condition is None or entity.condition.evaluate(context):
-            found += (entity.execute(context) if isinstance(entity, OpaqueFunction)
-                      else [entity]) or []
+            found += (
+                entity.execute(context) if isinstance(entity, OpaqueFunction) else [entity]
+            ) or []
     nodes = [entity for entity in found if isinstance(entity, Node)]
-    said = ' '.join(''.join(part.perform(context) for part in entity.msg) for entity in found
-                    if isinstance(entity, LogInfo))
+    said = ' '.join(
+        ''.join(part.perform(context) for part in entity.msg)
+        for entity in found
+        if isinstance(entity, LogInfo)
+    )
     for node in nodes:
         try:
             node._perform_substitutions(context)
@@ -73,8 +78,12 @@ def test_a_robot_counts_more_than_the_parameter_file(given, expected):
 
 
 def test_the_effort_guard_stands_between_the_node_and_the_controller():
-    guard, node = started(ROOT / 'launch' / 'dynamics.launch.py', effort_guard='true',
-                          namespace='left', controller_topic='mine/commands')[0]
+    guard, node = started(
+        ROOT / 'launch' / 'dynamics.launch.py',
+        effort_guard='true',
+        namespace='left',
+        controller_topic='mine/commands',
+    )[0]
     assert (guard.node_executable, guard.node_name) == ('effort_guard', '/left/effort_guard')
     assert len(guard._Node__parameters) == 2
     [[text]] = node._Node__parameters[-1].values()
@@ -108,7 +117,10 @@ def test_rviz_that_is_not_installed_is_no_reason_to_stop(monkeypatch):
         assert 'rviz2' in said and 'ros-$ROS_DISTRO-rviz2' in said
     else:
         assert {node.node_package for node in with_rviz} == {
-            'dynamics_node', 'rviz2', 'robot_state_publisher'}
+            'dynamics_node',
+            'rviz2',
+            'robot_state_publisher',
+        }
 
 
 def test_rviz_comes_with_the_markers_program_in_the_same_namespace():
@@ -124,6 +136,7 @@ def test_rviz_comes_with_the_markers_program_in_the_same_namespace():
 @pytest.mark.parametrize('robot', [ARM7, PENDULUM], ids=lambda path: path.stem)
 def test_rviz_looks_from_the_root_link(robot):
     from dynamics_node import RobotModel
+
     module = read(ROOT / 'launch' / 'demo.launch.py')
     assert module.root_link(robot.read_text()) == RobotModel.from_urdf(robot).tree.root
 
@@ -131,11 +144,13 @@ def test_rviz_looks_from_the_root_link(robot):
 def test_every_argument_that_is_used_in_the_documents_exists():
     used = {'dynamics.launch.py': set(), 'demo.launch.py': set()}
     for document in (ROOT / 'README.md', *(ROOT / 'docs').glob('*.md'), *LAUNCH_FILES):
-        for file, arguments in re.findall(r'ros2 launch dynamics_node (\S+\.py)((?: \w+:=\S+)*)',
-                                          document.read_text()):
+        for file, arguments in re.findall(
+            r'ros2 launch dynamics_node (\S+\.py)((?: \w+:=\S+)*)', document.read_text()
+        ):
             used[file] |= set(re.findall(r'(\w+):=', arguments))
     assert used['demo.launch.py'] >= {'namespace', 'rviz'}
     for file, arguments in used.items():
-        declared = set(re.findall(r"DeclareLaunchArgument\('(\w+)'",
-                                  (ROOT / 'launch' / file).read_text()))
+        declared = set(
+            re.findall(r"DeclareLaunchArgument\('(\w+)'", (ROOT / 'launch' / file).read_text())
+        )
         assert arguments <= declared

@@ -62,7 +62,8 @@ def test_it_is_built_as_plotjuggler_reads_it(layout):
             assert plot.get('mode') == 'TimeSeries' and plot.find('range') is not None
             assert all(curve.get('color').startswith('#') for curve in plot.iter('curve'))
             assert len({curve.get('color') for curve in plot.iter('curve')}) == min(
-                len(plot.findall('curve')), 8)
+                len(plot.findall('curve')), 8
+            )
         plugins = [plugin.get('ID') for plugin in root.find('Plugins')]
         assert plugins == ['ROS2 Topic Subscriber']
 
@@ -82,17 +83,26 @@ def assert_splits(element):
 @pytest.mark.parametrize('namespace', ['left', '/left', '/left/'])
 def test_another_robot_in_a_namespace(tmp_path, namespace):
     output = tmp_path / 'layout.xml'
-    run = subprocess.run([sys.executable, SCRIPT, PENDULUM, output, '--namespace', namespace],
-                         capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [sys.executable, SCRIPT, PENDULUM, output, '--namespace', namespace],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert run.returncode == 0, run.stderr
     assert set(curves(output.read_text())) == {
         f'/left/dynamics_node/{topic}/hinge/effort'
-        for topic in ('gravity_torque', 'external_torque')}
+        for topic in ('gravity_torque', 'external_torque')
+    }
 
 
 def test_what_is_no_robot_is_refused(tmp_path):
     output = tmp_path / 'layout.xml'
-    run = subprocess.run([sys.executable, SCRIPT, tmp_path / 'none.urdf', output],
-                         capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [sys.executable, SCRIPT, tmp_path / 'none.urdf', output],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert run.returncode == 1 and run.stderr.startswith('make_plotjuggler: ')
     assert 'Traceback' not in run.stderr and not output.exists()

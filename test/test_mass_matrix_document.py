@@ -30,8 +30,12 @@ def node():
     client = Client()
     try:
         # A busy machine takes longer to start a node than a user waits for one that runs.
-        client.until(lambda: any(name == '/dynamics_node/get_mass_matrix' for name, _ in
-                                 client.node.get_service_names_and_types()))
+        client.until(
+            lambda: any(
+                name == '/dynamics_node/get_mass_matrix'
+                for name, _ in client.node.get_service_names_and_types()
+            )
+        )
         yield
     finally:
         client.close()
@@ -66,8 +70,13 @@ rclpy.shutdown()
 main()
 print(json.dumps([names, D.tolist(), refusal]))
 """
-    run = subprocess.run([sys.executable, '-c', ASK + use], capture_output=True, text=True,
-                         timeout=60.0, check=False)
+    run = subprocess.run(
+        [sys.executable, '-c', ASK + use],
+        capture_output=True,
+        text=True,
+        timeout=60.0,
+        check=False,
+    )
     assert run.returncode == 0, run.stderr
     *printed, last = run.stdout.splitlines()
     names, D, refusal = json.loads(last)
@@ -80,11 +89,16 @@ print(json.dumps([names, D.tolist(), refusal]))
 
 
 def test_its_cpp_uses_fields_that_there_are():
-    request, answer = (re.findall(r'^\S+ +(\w+)', part, re.M) for part in (
-        ROOT / 'dynamics_interfaces/srv/GetMassMatrix.srv').read_text().split('---'))
+    request, answer = (
+        re.findall(r'^\S+ +(\w+)', part, re.M)
+        for part in (ROOT / 'dynamics_interfaces/srv/GetMassMatrix.srv').read_text().split('---')
+    )
     assert set(re.findall(r'request->(\w+)', CPP)) <= set(request)
-    assert {'success', 'message', 'joint_names', 'mass_matrix'} == set(
-        re.findall(r'response->(\w+)', CPP)) <= set(answer)
+    assert (
+        {'success', 'message', 'joint_names', 'mass_matrix'}
+        == set(re.findall(r'response->(\w+)', CPP))
+        <= set(answer)
+    )
     for name in re.findall(r'find_package\((\w+)', CMAKE):
         assert f'<depend>{name}</depend>' in PACKAGE or f'buildtool_depend>{name}<' in PACKAGE
 
@@ -93,7 +107,8 @@ def has_rclcpp():
     """Return whether rclcpp is installed here, with a compiler."""
     paths = os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)
     return shutil.which('cmake') and any(
-        (Path(path) / 'share/rclcpp/cmake').is_dir() for path in paths)
+        (Path(path) / 'share/rclcpp/cmake').is_dir() for path in paths
+    )
 
 
 @pytest.mark.timeout(400)
@@ -104,16 +119,19 @@ def test_its_cpp_gets_the_matrix_of_the_library(node, tmp_path):
     (tmp_path / 'CMakeLists.txt').write_text(CMAKE)
     (tmp_path / 'package.xml').write_text(PACKAGE)
     for arguments in (['-B', 'build', '-Wno-dev'], ['--build', 'build']):
-        run = subprocess.run(['cmake', *arguments], cwd=tmp_path, capture_output=True, text=True,
-                             check=False)
+        run = subprocess.run(
+            ['cmake', *arguments], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
         assert run.returncode == 0, run.stdout + run.stderr
     program = tmp_path / 'build' / 'mass_matrix_client'
-    run = subprocess.run([program, *map(str, Q)], capture_output=True, text=True, timeout=60.0,
-                         check=False)
+    run = subprocess.run(
+        [program, *map(str, Q)], capture_output=True, text=True, timeout=60.0, check=False
+    )
     assert run.returncode == 0, run.stderr
     assert [line.split()[0] for line in run.stdout.splitlines()] == list(ARM.joint_names)
     np.testing.assert_allclose(matrix(run.stdout), ARM.mass_matrix(Q), atol=1e-4)
-    refused = subprocess.run([program, '1'], capture_output=True, text=True, timeout=60.0,
-                             check=False)
+    refused = subprocess.run(
+        [program, '1'], capture_output=True, text=True, timeout=60.0, check=False
+    )
     assert refused.returncode == 1
     assert 'position: expected 8 values' in refused.stderr

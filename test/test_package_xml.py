@@ -5,9 +5,17 @@ import re
 
 PACKAGE = (Path(__file__).parents[1] / 'package.xml').read_text()
 # Keys of rosdistro's rosdep/python.yaml. One that is not there stops `rosdep install`.
-KEYS = {'python3-numpy', 'python3-numba', 'python3-scipy', 'python3-yourdfpy-pip',
-        'python3-matplotlib', 'python3-rich', 'python3-mujoco-pip', 'python3-pytest',
-        'python3-hypothesis'}
+KEYS = {
+    'python3-numpy',
+    'python3-numba',
+    'python3-scipy',
+    'python3-yourdfpy-pip',
+    'python3-matplotlib',
+    'python3-rich',
+    'python3-mujoco-pip',
+    'python3-pytest',
+    'python3-hypothesis',
+}
 
 
 def test_every_python_package_has_a_key_of_rosdep():

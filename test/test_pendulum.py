@@ -19,10 +19,14 @@ M, L, R, g = 3.0, 0.7, 0.05, 9.81
 EPS = np.finfo(float).eps
 
 # The lecture's J of the rod about its far end.
-LECTURE_J = np.array([[M * L**2 / 3, 0, 0, -M * L / 2],
-                      [0, M * R**2 / 4, 0, 0],
-                      [0, 0, M * R**2 / 4, 0],
-                      [-M * L / 2, 0, 0, M]])
+LECTURE_J = np.array(
+    [
+        [M * L**2 / 3, 0, 0, -M * L / 2],
+        [0, M * R**2 / 4, 0, 0],
+        [0, 0, M * R**2 / 4, 0],
+        [-M * L / 2, 0, 0, M],
+    ]
+)
 ANGLES = np.linspace(-7.0, 7.0, 101)[:, None]
 
 
@@ -33,8 +37,7 @@ def pendulum():
 
 def test_the_urdf_has_the_lectures_pseudo_inertia():
     rod = next(link for link in read_urdf(PENDULUM).links if link.name == 'rod')
-    np.testing.assert_allclose(link_pseudo_inertia(rod.inertial), LECTURE_J, rtol=0,
-                               atol=4 * EPS)
+    np.testing.assert_allclose(link_pseudo_inertia(rod.inertial), LECTURE_J, rtol=0, atol=4 * EPS)
 
 
 def test_the_closed_form_of_the_cylinder_is_the_lectures_pseudo_inertia():
@@ -44,16 +47,20 @@ def test_the_closed_form_of_the_cylinder_is_the_lectures_pseudo_inertia():
 
 def test_the_lectures_integral_is_the_lectures_pseudo_inertia():
     integral = pseudo_inertia_by_integration(
-        M / (L * np.pi * R**2), (-L, 0.0), (-R, R),
-        lambda x, y: (-np.sqrt(R**2 - y**2), np.sqrt(R**2 - y**2)))
+        M / (L * np.pi * R**2),
+        (-L, 0.0),
+        (-R, R),
+        lambda x, y: (-np.sqrt(R**2 - y**2), np.sqrt(R**2 - y**2)),
+    )
     np.testing.assert_allclose(integral, LECTURE_J, rtol=0, atol=20 * EPS)
 
 
 def test_the_mass_matrix_is_the_lectures(pendulum):
     expected = M * L**2 / 3 + M * R**2 / 4
     np.testing.assert_allclose(pendulum.mass_matrix(ANGLES), expected, rtol=8 * EPS)
-    np.testing.assert_allclose(textbook.mass_matrix(pendulum.tree, ANGLES[3]), expected,
-                               rtol=8 * EPS)
+    np.testing.assert_allclose(
+        textbook.mass_matrix(pendulum.tree, ANGLES[3]), expected, rtol=8 * EPS
+    )
 
 
 def test_the_coriolis_matrix_is_zero(pendulum):
@@ -64,12 +71,15 @@ def test_the_coriolis_matrix_is_zero(pendulum):
 def test_gravity_torque_holds_the_pendulum_up(pendulum):
     # +1/2 M l g cos q: positive where the rod points forward, because the torque must lift.
     expected = 0.5 * M * L * g * np.cos(ANGLES)
-    np.testing.assert_allclose(pendulum.gravity_torque(ANGLES), expected, rtol=0,
-                               atol=16 * EPS * M * L * g)
+    np.testing.assert_allclose(
+        pendulum.gravity_torque(ANGLES), expected, rtol=0, atol=16 * EPS * M * L * g
+    )
     assert pendulum.gravity_torque([0.0])[0] > 10.0
     np.testing.assert_allclose(
-        textbook.gravity_torque(pendulum.tree, ANGLES[3], pendulum.gravity), expected[3],
-        atol=16 * EPS * M * L * g)
+        textbook.gravity_torque(pendulum.tree, ANGLES[3], pendulum.gravity),
+        expected[3],
+        atol=16 * EPS * M * L * g,
+    )
 
 
 def test_the_uncorrected_formula_of_the_lecture_has_the_wrong_sign(pendulum):

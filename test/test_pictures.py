@@ -43,8 +43,14 @@ renderer.close()
 
 def render(**environment):
     """Render with other environment variables; returns the finished process."""
-    return subprocess.run([sys.executable, '-c', RENDER], capture_output=True, text=True,
-                          env={**os.environ, **environment}, timeout=120.0, check=False)
+    return subprocess.run(
+        [sys.executable, '-c', RENDER],
+        capture_output=True,
+        text=True,
+        env={**os.environ, **environment},
+        timeout=120.0,
+        check=False,
+    )
 
 
 def test_the_arm_is_rendered():
@@ -61,11 +67,13 @@ def test_without_opengl_it_says_what_to_install():
 
 
 def test_an_unknown_name_is_refused():
-    run = subprocess.run([sys.executable, SCRIPT, 'landscape'], capture_output=True, text=True,
-                         check=False)
+    run = subprocess.run(
+        [sys.executable, SCRIPT, 'landscape'], capture_output=True, text=True, check=False
+    )
     assert run.returncode == 1
     assert 'expected names out of floating, workspace, report, benchmarks, got landscape' in (
-        run.stderr)
+        run.stderr
+    )
 
 
 @pytest.fixture(scope='module')
@@ -99,8 +107,10 @@ def test_no_posture_is_worse_than_its_cell(few):
     for k in range(0, len(q), 501):
         if x[k] < 0.0 or x[k] >= reach[-1]:
             continue
-        cell = tuple(np.searchsorted(edges, place, 'right') - 1
-                     for edges, place in ((height, z[k]), (reach, x[k])))
+        cell = tuple(
+            np.searchsorted(edges, place, 'right') - 1
+            for edges, place in ((height, z[k]), (reach, x[k]))
+        )
         assert share[cell] >= np.max(np.abs(ARM.gravity_torque(q[k])) / ARM.effort_limits) - 1e-12
         assert payload[cell] <= ARM.max_payload(q[k], workspace.TOOL)[0] + 1e-9
     assert 0.3 < np.nanmax(share) < 1.0 and 2.0 < np.nanmin(payload) < 10.0
@@ -113,8 +123,11 @@ def test_the_benchmarks_are_those_of_the_page():
     row = next(line for line in page.splitlines() if line.startswith('| Pinocchio | D, C, G |'))
     assert all(f'{time:.3g} µs' in row for time in times['Pinocchio'])
     assert {'dynamics_node', 'Pinocchio'} <= complete and 'MuJoCo' not in complete
-    assert all(max(times['dynamics_node']) < min(times[name]) for name in times
-               if not name.startswith('dynamics_node'))
+    assert all(
+        max(times['dynamics_node']) < min(times[name])
+        for name in times
+        if not name.startswith('dynamics_node')
+    )
     assert f'| CPU | {machine} |' in page
 
 

@@ -7,13 +7,16 @@ from dynamics_node.kernels.specialised import is_supported
 import pytest
 
 ROOT = Path(__file__).parents[1]
-DOCUMENTS = [ROOT / name for name in ('README.md', 'ARCHITECTURE.md', 'CONTRIBUTING.md',
-                                  'SECURITY.md')]
+DOCUMENTS = [
+    ROOT / name for name in ('README.md', 'ARCHITECTURE.md', 'CONTRIBUTING.md', 'SECURITY.md')
+]
 DOCUMENTS += sorted((ROOT / 'docs').rglob('*.md'))
 # They need a node, and have a test of their own.
-WITH_A_NODE = {'docs/trajectory.md': 'test_trajectory_document.py',
-               'docs/tutorial.md': 'test_tutorial_document.py',
-               'docs/how_to/mass_matrix.md': 'test_mass_matrix_document.py'}
+WITH_A_NODE = {
+    'docs/trajectory.md': 'test_trajectory_document.py',
+    'docs/tutorial.md': 'test_tutorial_document.py',
+    'docs/how_to/mass_matrix.md': 'test_mass_matrix_document.py',
+}
 
 
 def blocks(path, language='python'):
@@ -59,9 +62,10 @@ def test_the_code_of_every_document_runs(monkeypatch, path):
 def test_the_first_screen_is_a_sentence_a_picture_the_commands_and_code():
     top = (ROOT / 'README.md').read_text().splitlines()[:30]
     assert top[0] == '# dynamics_node'
-    places = [next(number for number, line in enumerate(top) if line.startswith(beginning))
-              for beginning in ('The dynamics of', '![', '    make demo', '    make test',
-                                '```python')]
+    places = [
+        next(number for number, line in enumerate(top) if line.startswith(beginning))
+        for beginning in ('The dynamics of', '![', '    make demo', '    make test', '```python')
+    ]
     assert places == sorted(places)
     assert top.index('```') - places[-1] - 1 == 11
 
@@ -82,15 +86,17 @@ def anchors(path):
     """Return the places of a document to which a link can lead, as GitHub names them."""
     text = path.read_text()
     headings = re.findall(r'^#+ (.*)$', text, re.M)
-    return {'#' + re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
-            for heading in headings} | {f'#{name}'
-                                        for name in re.findall(r'<a name="(.*?)">', text)}
+    return {
+        '#' + re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-') for heading in headings
+    } | {f'#{name}' for name in re.findall(r'<a name="(.*?)">', text)}
 
 
 def test_every_document_is_in_the_index():
     index = ROOT / 'docs' / 'README.md'
-    listed = {(index.parent / target).resolve()
-              for target in re.findall(r'\]\(([^)#]+)', index.read_text())}
+    listed = {
+        (index.parent / target).resolve()
+        for target in re.findall(r'\]\(([^)#]+)', index.read_text())
+    }
     for path in (ROOT / 'docs').rglob('*.md'):
         assert path == index or path.resolve() in listed, f'{name_of(path)} is not in the index'
 

@@ -18,18 +18,20 @@ sys.path.insert(0, str(ROOT / 'scripts'))
 from reference import graph, interfaces, page  # noqa: E402
 
 NAME = '/dynamics_node'
-KINDS = {ParameterType.PARAMETER_BOOL: 'bool', ParameterType.PARAMETER_DOUBLE: 'double',
-         ParameterType.PARAMETER_STRING: 'string',
-         ParameterType.PARAMETER_DOUBLE_ARRAY: 'double[]',
-         ParameterType.PARAMETER_STRING_ARRAY: 'string[]'}
+KINDS = {
+    ParameterType.PARAMETER_BOOL: 'bool',
+    ParameterType.PARAMETER_DOUBLE: 'double',
+    ParameterType.PARAMETER_STRING: 'string',
+    ParameterType.PARAMETER_DOUBLE_ARRAY: 'double[]',
+    ParameterType.PARAMETER_STRING_ARRAY: 'string[]',
+}
 
 
 def rows(title):
     """Return the cells of the first table under a heading of the page as it lies there."""
     section = page.PATH.read_text().split(f'# {title}\n', 1)[1]
     table = re.search(r'^\|.*\n\|[-|]+\n((?:\|.*\n)+)', section, re.M)[1]
-    return [[cell.strip() for cell in line.strip('|').split(' | ')]
-            for line in table.splitlines()]
+    return [[cell.strip() for cell in line.strip('|').split(' | ')] for line in table.splitlines()]
 
 
 def plain(cell):
@@ -62,16 +64,25 @@ def test_it_is_up_to_date():
 
 
 @pytest.mark.timeout(120)
-@pytest.mark.parametrize(('title', 'question'), [
-    ('Subscribed', 'get_subscriber_names_and_types_by_node'),
-    ('Published', 'get_publisher_names_and_types_by_node'),
-    ('Services', 'get_service_names_and_types_by_node')])
+@pytest.mark.parametrize(
+    ('title', 'question'),
+    [
+        ('Subscribed', 'get_subscriber_names_and_types_by_node'),
+        ('Published', 'get_publisher_names_and_types_by_node'),
+        ('Services', 'get_service_names_and_types_by_node'),
+    ],
+)
 def test_a_running_node_has_these_and_no_others(running, title, question):
     def found():
         names = getattr(running.node, question)('dynamics_node', '/')
-        return {name: kind for name, [kind] in names
-                if name not in graph.OF_EVERY_NODE and 'rcl_interfaces/' not in kind
-                and 'type_description' not in kind}
+        return {
+            name: kind
+            for name, [kind] in names
+            if name not in graph.OF_EVERY_NODE
+            and 'rcl_interfaces/' not in kind
+            and 'type_description' not in kind
+        }
+
     expected = stated(title)
     running.until(lambda: 'dynamics_node' in running.node.get_node_names())
     try:
@@ -85,8 +96,11 @@ def test_a_running_node_has_these_and_no_others(running, title, question):
 def test_a_running_node_has_these_parameters_and_defaults(running):
     def ask(kind, service, **request):
         return running.call(kind, f'{NAME}/{service}', kind.Request(**request))
-    table = {plain(name): (kind, plain(default), words)
-             for name, kind, default, words in rows('Parameters')}
+
+    table = {
+        plain(name): (kind, plain(default), words)
+        for name, kind, default, words in rows('Parameters')
+    }
     listed = set(ask(ListParameters, 'list_parameters').result.names)
     # These, and the overrides of the quality of service, are those of every node.
     listed -= {'use_sim_time', 'start_type_description_service'}
@@ -94,8 +108,11 @@ def test_a_running_node_has_these_parameters_and_defaults(running):
     names = list(table)
     values = ask(GetParameters, 'get_parameters', names=names).values
     for name, value, said in zip(
-            names, values, ask(DescribeParameters, 'describe_parameters', names=names).descriptors,
-            strict=True):
+        names,
+        values,
+        ask(DescribeParameters, 'describe_parameters', names=names).descriptors,
+        strict=True,
+    ):
         kind, default, words = table[name]
         assert KINDS[said.type] == kind, name
         assert said.read_only == words.strip('| ').endswith('Read-only'), name
@@ -104,16 +121,21 @@ def test_a_running_node_has_these_parameters_and_defaults(running):
             assert f'Accepts {said.additional_constraints}' in plain(words), name
         is_now = parameter_value_to_python(value)
         assert page.shown(is_now if isinstance(is_now, (bool, float, str)) else tuple(is_now)) == (
-            default), name
+            default
+        ), name
     assert len(names) == len(PARAMETERS) > 20
 
 
 def test_every_interface_file_is_on_it_with_every_field():
     text = page.PATH.read_text()
-    files = [path for folder in ('msg', 'srv')
-             for path in (ROOT / 'dynamics_interfaces' / folder).iterdir()]
+    files = [
+        path
+        for folder in ('msg', 'srv')
+        for path in (ROOT / 'dynamics_interfaces' / folder).iterdir()
+    ]
     assert set(re.findall(r'^### (\w+)$', text, re.M)) - {'Subscribed', 'Published'} == {
-        path.stem for path in files}
+        path.stem for path in files
+    }
     for path in files:
         section = text.split(f'### {path.stem}\n')[1].split('\n#')[0]
         fields = [item for part in interfaces.read(path).parts for item in part]
@@ -125,26 +147,38 @@ def test_every_interface_file_is_on_it_with_every_field():
 def test_every_program_that_is_installed_is_on_it():
     installed = re.findall(r"'(\w+) = dynamics_node", (ROOT / 'setup.py').read_text())
     assert {plain(cells[0]).split()[3] for cells in rows('Programs and launch files')} == set(
-        installed)
+        installed
+    )
 
 
 def test_the_markers_program_uses_these_topics():
     # Its policy is held against the graph of the running program.
-    allowed = set().union(*read(
-        ROOT.joinpath('config', 'sros2_policy_markers.xml').read_text()).allowed.values())
+    allowed = set().union(
+        *read(ROOT.joinpath('config', 'sros2_policy_markers.xml').read_text()).allowed.values()
+    )
     named = {plain(name) for name, *_ in rows('Markers program')}
-    used = {f'/{name}' if name[0] != '/' else name
-            for name in (name.replace('<node>', 'dynamics_node') for name in named)}
+    used = {
+        f'/{name}' if name[0] != '/' else name
+        for name in (name.replace('<node>', 'dynamics_node') for name in named)
+    }
     assert used == {name for name in allowed if not name.startswith('/markers/')} - {
-        '/rosout', '/clock'}
+        '/rosout',
+        '/clock',
+    }
     assert named == {entry.name for entry in graph.MARKERS}
 
 
 def test_the_service_table_is_that_of_the_interfaces():
-    named = {entry.kind.rpartition('/')[2] for entry in graph.SERVICES + graph.PUBLISHED
-             if entry.kind.startswith('dynamics_interfaces/')}
-    assert named == {path.stem for folder in ('msg', 'srv')
-                     for path in (ROOT / 'dynamics_interfaces' / folder).iterdir()}
+    named = {
+        entry.kind.rpartition('/')[2]
+        for entry in graph.SERVICES + graph.PUBLISHED
+        if entry.kind.startswith('dynamics_interfaces/')
+    }
+    assert named == {
+        path.stem
+        for folder in ('msg', 'srv')
+        for path in (ROOT / 'dynamics_interfaces' / folder).iterdir()
+    }
 
 
 @pytest.mark.parametrize('line', ['float64 mass kg', '// mass', 'float64'])

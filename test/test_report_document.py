@@ -29,5 +29,14 @@ def test_every_command_in_it_is_one():
     for option in re.findall(r'`(--[a-z-]+)', TEXT):
         with pytest.raises(SystemExit):
             parse(['--help'])
-        assert option in ('--help', '--json', '--html', '--strict', '--gravity', '--samples',
-                          '--seed', '--payload-link', '--payload-point')
+        assert option in (
+            '--help',
+            '--json',
+            '--html',
+            '--strict',
+            '--gravity',
+            '--samples',
+            '--seed',
+            '--payload-link',
+            '--payload-point',
+        )

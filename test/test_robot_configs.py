@@ -52,8 +52,10 @@ def test_the_real_node_takes_it(path):
     wanted = parameters(path)
     try:
         answer = client.call(
-            GetMaxPayload, '/dynamics_node/get_max_payload',
-            GetMaxPayload.Request(position=[0.0] * len(wanted['joints'])))
+            GetMaxPayload,
+            '/dynamics_node/get_max_payload',
+            GetMaxPayload.Request(position=[0.0] * len(wanted['joints'])),
+        )
     finally:
         client.close()
         node.close()

@@ -66,7 +66,8 @@ def test_the_numbers_are_those_of_the_code(text):
         ('signals closer together', signals.SAME_SIGNAL),
         ('longest stop after a signal', main.GIVE_UP_AFTER),
         ('zero after a second signal', main.HURRY_WITHIN),
-        ('an executor that raises', main.FAILING_FOR)]
+        ('an executor that raises', main.FAILING_FOR),
+    ]
     assert [value for _, value in said] == [value for _, value in expected]
     for (words, _), (beginning, _) in zip(said, expected, strict=True):
         assert words.startswith(beginning)

@@ -48,8 +48,13 @@ rclpy.shutdown()
 def answers():
     node = NodeProcess(robot_description_file=ARM7)
     try:
-        run = subprocess.run([sys.executable, '-c', ASK + USE], capture_output=True, text=True,
-                             timeout=90.0, check=False)
+        run = subprocess.run(
+            [sys.executable, '-c', ASK + USE],
+            capture_output=True,
+            text=True,
+            timeout=90.0,
+            check=False,
+        )
     finally:
         node.close()
     assert run.returncode == 0, run.stderr
@@ -67,9 +72,12 @@ def test_the_efforts_that_its_code_gets_are_those_of_the_motion(answers):
     np.testing.assert_allclose(q[-1], GOAL, atol=1e-12)
     expected = ARM.inverse_dynamics(whole(q), whole(qd), whole(qdd))[:, :7]
     np.testing.assert_allclose(effort, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
-    np.testing.assert_allclose(np.array(without)[:, 3],
-                               expected - ARM.gravity_torque(whole(q))[:, :7],
-                               rtol=0, atol=1e-11 * np.abs(expected).max())
+    np.testing.assert_allclose(
+        np.array(without)[:, 3],
+        expected - ARM.gravity_torque(whole(q))[:, :7],
+        rtol=0,
+        atol=1e-11 * np.abs(expected).max(),
+    )
     assert 'are over their limits, first at point 0' in refusal
 
 
@@ -127,8 +135,9 @@ def test_a_goal_that_is_not_done_in_time_is_cancelled(monkeypatch):
     action = SimpleNamespace(Goal=SimpleNamespace, Result=SimpleNamespace(SUCCESSFUL=0))
     # control_msgs is not everywhere where the tests run.
     monkeypatch.setitem(sys.modules, 'control_msgs', ModuleType('control_msgs'))
-    monkeypatch.setitem(sys.modules, 'control_msgs.action',
-                        SimpleNamespace(FollowJointTrajectory=action))
+    monkeypatch.setitem(
+        sys.modules, 'control_msgs.action', SimpleNamespace(FollowJointTrajectory=action)
+    )
     names: dict = {}
     exec(compile(ASK + SEND, 'docs/trajectory.md', 'exec'), names)
     names['monotonic'] = lambda: clock[0]

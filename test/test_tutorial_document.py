@@ -41,11 +41,15 @@ def test_the_page_is_taken_apart_and_put_together_again():
     assert not [part for part in parts if isinstance(part, Block) and ' ...\n' in part.text]
 
 
-@pytest.mark.parametrize(('stated', 'line', 'does'), [
-    ('[INFO] [1795372226.228780977] [n]: at 1.5', '[INFO] [1795379999.1] [n]: at 1.7', True),
-    ('at 1.5 N m', 'at 1.5 N', False),
-    ('READY ...', '[n]: output READY: off', True),
-    ('READY ...', '[n]: output FAULT: off', False)])
+@pytest.mark.parametrize(
+    ('stated', 'line', 'does'),
+    [
+        ('[INFO] [1795372226.228780977] [n]: at 1.5', '[INFO] [1795379999.1] [n]: at 1.7', True),
+        ('at 1.5 N m', 'at 1.5 N', False),
+        ('READY ...', '[n]: output READY: off', True),
+        ('READY ...', '[n]: output FAULT: off', False),
+    ],
+)
 def test_a_line_fits_but_for_its_stamp_and_its_numbers(stated, line, does):
     assert fits(stated, line) is does
 

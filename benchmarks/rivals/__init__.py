@@ -10,8 +10,17 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 
 # In the order of the report.
-FILES = ('payload', 'general', 'pinocchio', 'mujoco', 'drake', 'kdl', 'roboticstoolbox', 'frax',
-         'textbook')
+FILES = (
+    'payload',
+    'general',
+    'pinocchio',
+    'mujoco',
+    'drake',
+    'kdl',
+    'roboticstoolbox',
+    'frax',
+    'textbook',
+)
 
 
 def load(names=FILES):

@@ -8,8 +8,10 @@ from ..quantities import Call
 
 NAME = 'Drake'
 PACKAGE = 'drake'
-NOTE = ('It has no C: beside D it gives the vectors C q̇ and G. Setting the state in the context '
-        'is included; quantities of one state share what the context remembers.')
+NOTE = (
+    'It has no C: beside D it gives the vectors C q̇ and G. Setting the state in the context '
+    'is included; quantities of one state share what the context remembers.'
+)
 
 
 def plant_of(robot):
@@ -37,8 +39,10 @@ def plant_of(robot):
         plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(robot.model.tree.root))
     plant.Finalize()
     joints = [plant.get_joint(index) for index in plant.GetJointIndices()]
-    moving = sorted((joint for joint in joints if joint.num_velocities()),
-                    key=lambda joint: joint.velocity_start())
+    moving = sorted(
+        (joint for joint in joints if joint.num_velocities()),
+        key=lambda joint: joint.velocity_start(),
+    )
     names = tuple(joint.name() for joint in moving)
     robot.demand_order(names)
     return plant
@@ -66,8 +70,11 @@ def calls(robot):
     def dynamics(q, qd):
         plant.SetPositions(context, q)
         plant.SetVelocities(context, qd)
-        return (plant.CalcMassMatrix(context), plant.CalcBiasTerm(context),
-                -plant.CalcGravityGeneralizedForces(context))
+        return (
+            plant.CalcMassMatrix(context),
+            plant.CalcBiasTerm(context),
+            -plant.CalcGravityGeneralizedForces(context),
+        )
 
     def mass_matrix(q):
         plant.SetPositions(context, q)
@@ -91,8 +98,11 @@ def calls(robot):
         return (derivatives.get_generalized_velocity().CopyToVector(),)
 
     return {
-        'dynamics': Call(dynamics, ('D', 'C qd', 'G'),
-                         'CalcMassMatrix, CalcBiasTerm, CalcGravityGeneralizedForces'),
+        'dynamics': Call(
+            dynamics,
+            ('D', 'C qd', 'G'),
+            'CalcMassMatrix, CalcBiasTerm, CalcGravityGeneralizedForces',
+        ),
         'mass_matrix': Call(mass_matrix, ('D',), 'CalcMassMatrix'),
         'gravity': Call(gravity, ('G',), 'CalcGravityGeneralizedForces'),
         'inverse': Call(inverse, ('tau',), 'CalcForceElementsContribution, CalcInverseDynamics'),

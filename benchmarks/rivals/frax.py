@@ -17,10 +17,12 @@ from ..quantities import Call
 
 NAME = 'frax'
 PACKAGE = 'frax'
-NOTE = ('It has no C: beside D it gives the vectors C q̇ and G, one compiled function for all '
-        'three. Double precision, one thread, the JAX that its README names as the fastest on '
-        'a CPU. Compiling is not counted, waiting for the result is. It has no inverse dynamics '
-        'of its own; D q̈ + bias is compiled instead.')
+NOTE = (
+    'It has no C: beside D it gives the vectors C q̇ and G, one compiled function for all '
+    'three. Double precision, one thread, the JAX that its README names as the fastest on '
+    'a CPU. Compiling is not counted, waiting for the result is. It has no inverse dynamics '
+    'of its own; D q̈ + bias is compiled instead.'
+)
 
 
 def robot_of(robot):
@@ -63,12 +65,16 @@ def calls(robot):
     qdd = jax.jit(lambda q, qd, tau: (arm.forward_dynamics(q, qd, tau, None),))
     wait = jax.block_until_ready
     return {
-        'dynamics': Call(lambda q, qd: wait(all_terms(q, qd)), ('D', 'C qd', 'G'),
-                         'mass_matrix, centrifugal_coriolis_vector, gravity_vector'),
+        'dynamics': Call(
+            lambda q, qd: wait(all_terms(q, qd)),
+            ('D', 'C qd', 'G'),
+            'mass_matrix, centrifugal_coriolis_vector, gravity_vector',
+        ),
         'mass_matrix': Call(lambda q: wait(only_D(q)), ('D',), 'mass_matrix'),
         'gravity': Call(lambda q: wait(only_G(q)), ('G',), 'gravity_vector'),
-        'inverse': Call(lambda q, qd, qdd: wait(tau(q, qd, qdd)), ('tau',),
-                        'mass_matrix @ q̈ + nonlinear_bias'),
+        'inverse': Call(
+            lambda q, qd, qdd: wait(tau(q, qd, qdd)), ('tau',), 'mass_matrix @ q̈ + nonlinear_bias'
+        ),
         'forward': Call(lambda q, qd, tau: wait(qdd(q, qd, tau)), ('qdd',), 'forward_dynamics'),
     }
 
@@ -104,7 +110,8 @@ def terms(arm):
     callable
 
     """
+
     def function(q, qd):
-        return (arm.mass_matrix(q), arm.centrifugal_coriolis_vector(q, qd),
-                arm.gravity_vector(q))
+        return (arm.mass_matrix(q), arm.centrifugal_coriolis_vector(q, qd), arm.gravity_vector(q))
+
     return function

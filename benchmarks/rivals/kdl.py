@@ -8,9 +8,11 @@ from ..quantities import Call
 NAME = 'PyKDL'
 PACKAGE = 'PyKDL'
 VERSION = PyKDL.__version__
-NOTE = ('It has no C: beside D it gives the vectors C q̇ and G. Its own containers are filled '
-        'before the clock starts; reading results back as arrays is not counted. Its Python '
-        'bindings have no forward dynamics.')
+NOTE = (
+    'It has no C: beside D it gives the vectors C q̇ and G. Its own containers are filled '
+    'before the clock starts; reading results back as arrays is not counted. Its Python '
+    'bindings have no forward dynamics.'
+)
 
 # Its solvers refer to a chain that they do not keep alive.
 _CHAINS: list = []
@@ -64,8 +66,10 @@ def calls(robot):
     gravity_vector = PyKDL.Vector(*robot.model.gravity)
     solver = PyKDL.ChainDynParam(chain, gravity_vector)
     newton_euler = PyKDL.ChainIdSolver_RNE(chain, gravity_vector)
-    D, bias, G, tau = (PyKDL.JntSpaceInertiaMatrix(robot.n),
-                       *(PyKDL.JntArray(robot.n) for _ in range(3)))
+    D, bias, G, tau = (
+        PyKDL.JntSpaceInertiaMatrix(robot.n),
+        *(PyKDL.JntArray(robot.n) for _ in range(3)),
+    )
     no_wrenches = [PyKDL.Wrench.Zero() for _ in range(robot.n)]
 
     def dynamics(q, qd):
@@ -88,8 +92,9 @@ def calls(robot):
 
     ways = {'argument': _joint_array, 'array': _numpy_array}
     return {
-        'dynamics': Call(dynamics, ('D', 'C qd', 'G'), 'JntToMass, JntToCoriolis, JntToGravity',
-                         **ways),
+        'dynamics': Call(
+            dynamics, ('D', 'C qd', 'G'), 'JntToMass, JntToCoriolis, JntToGravity', **ways
+        ),
         'mass_matrix': Call(mass_matrix, ('D',), 'JntToMass', **ways),
         'gravity': Call(gravity, ('G',), 'JntToGravity', **ways),
         'inverse': Call(inverse, ('tau',), 'ChainIdSolver_RNE.CartToJnt', **ways),

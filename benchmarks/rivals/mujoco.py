@@ -9,8 +9,10 @@ from ..quantities import Call
 
 NAME = 'MuJoCo'
 PACKAGE = 'mujoco'
-NOTE = ('It has no C: beside D it gives the bias C q̇ + G. Only the stages that a quantity needs '
-        'are called, not the whole mj_forward or mj_inverse. Setting the state is included.')
+NOTE = (
+    'It has no C: beside D it gives the bias C q̇ + G. Only the stages that a quantity needs '
+    'are called, not the whole mj_forward or mj_inverse. Setting the state is included.'
+)
 
 
 def model_of(robot):
@@ -116,11 +118,13 @@ def calls(robot):
 
     stages = 'mj_kinematics, mj_comPos'
     return {
-        'dynamics': Call(dynamics, ('D', 'C qd + G'),
-                         f'{stages}, mj_makeM, mj_fullM, mj_comVel, mj_rne'),
+        'dynamics': Call(
+            dynamics, ('D', 'C qd + G'), f'{stages}, mj_makeM, mj_fullM, mj_comVel, mj_rne'
+        ),
         'mass_matrix': Call(mass_matrix, ('D',), f'{stages}, mj_makeM, mj_fullM'),
         'gravity': Call(gravity, ('G',), f'{stages}, mj_rne at rest'),
         'inverse': Call(inverse, ('tau',), f'{stages}, mj_comVel, mj_rne'),
-        'forward': Call(forward, ('qdd',),
-                        f'{stages}, mj_makeM, mj_factorM, mj_comVel, mj_rne, mj_solveM'),
+        'forward': Call(
+            forward, ('qdd',), f'{stages}, mj_makeM, mj_factorM, mj_comVel, mj_rne, mj_solveM'
+        ),
     }

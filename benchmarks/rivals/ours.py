@@ -9,8 +9,10 @@ NAME = 'dynamics_node'
 PACKAGE = 'dynamics_node'
 # Of this checkout: a package of this name may be installed from somewhere else.
 VERSION = ElementTree.parse(ROOT / 'package.xml').findtext('version')
-NOTE = ("Machine code of the robot's own, the methods of `RobotModel` themselves: arguments are "
-        "checked, and an answer that is held stays its holder's.")
+NOTE = (
+    "Machine code of the robot's own, the methods of `RobotModel` themselves: arguments are "
+    "checked, and an answer that is held stays its holder's."
+)
 
 
 def calls(robot):

@@ -5,9 +5,11 @@ from .ours import calls_of, PACKAGE, VERSION
 __all__ = ['NAME', 'NOTE', 'PACKAGE', 'VERSION', 'calls']
 
 NAME = 'dynamics_node, payload'
-NOTE = ('The machine code that reads the inertia of the bodies when it runs, so one serves every '
-        'payload in the same time. This one is 1e-15 kg on the last link, so that the results '
-        'can be held against the others.')
+NOTE = (
+    'The machine code that reads the inertia of the bodies when it runs, so one serves every '
+    'payload in the same time. This one is 1e-15 kg on the last link, so that the results '
+    'can be held against the others.'
+)
 _MASS = 1e-15
 
 

@@ -6,8 +6,10 @@ from ..quantities import Call
 
 NAME = 'Pinocchio'
 PACKAGE = 'pin'
-NOTE = ('Results are views into its data, overwritten by the next call; a user who keeps them '
-        'pays for a copy that is not counted here.')
+NOTE = (
+    'Results are views into its data, overwritten by the next call; a user who keeps them '
+    'pays for a copy that is not counted here.'
+)
 
 
 def model_of(robot):
@@ -54,8 +56,11 @@ def calls(robot):
     rnea, aba = pinocchio.rnea, pinocchio.aba
 
     def dynamics(q, qd):
-        return (crba(model, data, q), coriolis(model, data, q, qd),
-                generalized_gravity(model, data, q))
+        return (
+            crba(model, data, q),
+            coriolis(model, data, q, qd),
+            generalized_gravity(model, data, q),
+        )
 
     def mass_matrix(q):
         return (crba(model, data, q),)
@@ -70,8 +75,9 @@ def calls(robot):
         return (aba(model, data, q, qd, tau),)
 
     return {
-        'dynamics': Call(dynamics, ('D', 'C', 'G'),
-                         'crba, computeCoriolisMatrix, computeGeneralizedGravity'),
+        'dynamics': Call(
+            dynamics, ('D', 'C', 'G'), 'crba, computeCoriolisMatrix, computeGeneralizedGravity'
+        ),
         'mass_matrix': Call(mass_matrix, ('D',), 'crba'),
         'gravity': Call(gravity, ('G',), 'computeGeneralizedGravity'),
         'inverse': Call(inverse, ('tau',), 'rnea'),

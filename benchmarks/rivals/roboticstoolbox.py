@@ -8,10 +8,12 @@ from ..quantities import Call
 
 NAME = 'roboticstoolbox'
 PACKAGE = 'roboticstoolbox-python'
-NOTE = ('Written in Python. Its robot is built link by link with the fixed links merged, which '
-        'makes it faster. In version 1.5.0 its coriolis() fails on the copy without friction that '
-        'it makes of a robot of links; the robots here have no friction, so they are their own '
-        'copy.')
+NOTE = (
+    'Written in Python. Its robot is built link by link with the fixed links merged, which '
+    'makes it faster. In version 1.5.0 its coriolis() fails on the copy without friction that '
+    'it makes of a robot of links; the robots here have no friction, so they are their own '
+    'copy.'
+)
 
 
 class FrictionlessRobot(roboticstoolbox.Robot):
@@ -45,11 +47,16 @@ def robot_of(robot):
         J = turns[k + 1].T @ tree.inertia[k] @ turns[k + 1]
         mass, com = J[3, 3], J[:3, 3] / J[3, 3]
         planes = J[:3, :3] - mass * np.outer(com, com)
-        links.append(roboticstoolbox.Link(
-            roboticstoolbox.ET.SE3(SE3(placement, check=False)) * roboticstoolbox.ET.Rz(),
-            name=tree.body_names[k], m=mass, r=com,
-            I=np.trace(planes) * np.eye(3) - planes,
-            parent=links[tree.parent[k]] if tree.parent[k] >= 0 else None))
+        links.append(
+            roboticstoolbox.Link(
+                roboticstoolbox.ET.SE3(SE3(placement, check=False)) * roboticstoolbox.ET.Rz(),
+                name=tree.body_names[k],
+                m=mass,
+                r=com,
+                I=np.trace(planes) * np.eye(3) - planes,
+                parent=links[tree.parent[k]] if tree.parent[k] >= 0 else None,
+            )
+        )
     return FrictionlessRobot(links, name=robot.name, gravity=robot.model.gravity)
 
 

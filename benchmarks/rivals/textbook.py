@@ -8,8 +8,10 @@ from ..quantities import Call
 __all__ = ['NAME', 'NOTE', 'PACKAGE', 'VERSION', 'calls']
 
 NAME = 'textbook formulas'
-NOTE = ('The sums of docs/mathematics.md, section 3, in numpy, slow on purpose: products of 4x4 '
-        'matrices and their derivatives.')
+NOTE = (
+    'The sums of docs/mathematics.md, section 3, in numpy, slow on purpose: products of 4x4 '
+    'matrices and their derivatives.'
+)
 
 
 def calls(robot):
@@ -28,8 +30,11 @@ def calls(robot):
     tree, g = robot.model.tree, robot.model.gravity
 
     def dynamics(q, qd):
-        return (textbook.mass_matrix(tree, q), textbook.coriolis_matrix(tree, q, qd),
-                textbook.gravity_torque(tree, q, g))
+        return (
+            textbook.mass_matrix(tree, q),
+            textbook.coriolis_matrix(tree, q, qd),
+            textbook.gravity_torque(tree, q, g),
+        )
 
     def mass_matrix(q):
         return (textbook.mass_matrix(tree, q),)

@@ -22,8 +22,16 @@ class Bodies:
 
     """
 
-    def __init__(self, names, matrices, rows, sizes, *, groups=(CENTRES, BOXES),
-                 colour=(colours.BODY, colours.INERTIA)):
+    def __init__(
+        self,
+        names,
+        matrices,
+        rows,
+        sizes,
+        *,
+        groups=(CENTRES, BOXES),
+        colour=(colours.BODY, colours.INERTIA),
+    ):
         """
         Look at the bodies once.
 
@@ -87,16 +95,25 @@ class Bodies:
         if not self._names:
             return
         poses = poses[self._rows]
-        places = [tuple(place) for place in np.einsum('kij,kj->ki', poses[:, :3],
-                                                      self._com).tolist()]
+        places = [
+            tuple(place) for place in np.einsum('kij,kj->ki', poses[:, :3], self._com).tolist()
+        ]
         turns = quaternions(poses[:, :3, :3] @ self._box_rotation).tolist()
         for k, (place, turn) in enumerate(zip(places, turns, strict=True)):
             if self._masses[k] > 0.0:
-                yield Shape(self._groups[0], k, SPHERE, self._sphere_size[k], self._colours[0],
-                            place)
+                yield Shape(
+                    self._groups[0], k, SPHERE, self._sphere_size[k], self._colours[0], place
+                )
             if k in self._box_size:
-                yield Shape(self._groups[1], k + self._offset, BOX, self._box_size[k],
-                            self._colours[1], place, tuple(turn))
+                yield Shape(
+                    self._groups[1],
+                    k + self._offset,
+                    BOX,
+                    self._box_size[k],
+                    self._colours[1],
+                    place,
+                    tuple(turn),
+                )
             if k in self._problems:
                 yield from self._problem(k, place)
 
@@ -107,7 +124,15 @@ class Bodies:
 
     def _problem(self, k, place):
         above = (place[0], place[1], place[2] + 2.5 * self._sizes.text)
-        return [Shape(PROBLEMS, 2 * k, BOX, (1.6 * self._sizes.sphere,) * 3, colours.PROBLEM,
-                      place),
-                Shape(PROBLEMS, 2 * k + 1, TEXT, self._sizes.text_size, colours.PROBLEM, above,
-                      text=f'{self._names[k]}: {self._problems[k]}')]
+        return [
+            Shape(PROBLEMS, 2 * k, BOX, (1.6 * self._sizes.sphere,) * 3, colours.PROBLEM, place),
+            Shape(
+                PROBLEMS,
+                2 * k + 1,
+                TEXT,
+                self._sizes.text_size,
+                colours.PROBLEM,
+                above,
+                text=f'{self._names[k]}: {self._problems[k]}',
+            ),
+        ]

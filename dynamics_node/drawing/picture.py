@@ -37,8 +37,9 @@ class Picture:
 
         """
         self._sizes = sizes.make_sizes(tree)
-        self._bodies = Bodies(_link_names(tree), list(tree.inertia), range(len(tree.inertia)),
-                              self._sizes)
+        self._bodies = Bodies(
+            _link_names(tree), list(tree.inertia), range(len(tree.inertia)), self._sizes
+        )
         self._torques = Torques(tree, joint_names, self._sizes)
         self._links = tree.links
         self._payload = None
@@ -71,10 +72,19 @@ class Picture:
         poses = model.body_poses(q)
         if not np.isfinite(poses).all():
             return []
-        torques = () if gravity_torque is None else self._torques.shapes(
-            poses, gravity_torque, effort, limits)
-        return list(chain(self._bodies.shapes(poses), self._carried(model.payload).shapes(poses),
-                          self._gravity(model.gravity.tolist()), torques))
+        torques = (
+            ()
+            if gravity_torque is None
+            else self._torques.shapes(poses, gravity_torque, effort, limits)
+        )
+        return list(
+            chain(
+                self._bodies.shapes(poses),
+                self._carried(model.payload).shapes(poses),
+                self._gravity(model.gravity.tolist()),
+                torques,
+            )
+        )
 
     def _carried(self, payload):
         if payload is not self._payload:
@@ -86,8 +96,14 @@ class Picture:
         if frame is None or frame.body < 0:
             return Bodies((), (), (), self._sizes)
         J = transform_pseudo_inertia(payload.pseudo_inertia, frame.placement)
-        return Bodies(('payload',), (J,), (frame.body,), self._sizes, groups=(PAYLOAD, PAYLOAD),
-                      colour=(colours.PAYLOAD, colours.PAYLOAD_INERTIA))
+        return Bodies(
+            ('payload',),
+            (J,),
+            (frame.body,),
+            self._sizes,
+            groups=(PAYLOAD, PAYLOAD),
+            colour=(colours.PAYLOAD, colours.PAYLOAD_INERTIA),
+        )
 
     def _gravity(self, gravity):
         # Beside the base, so that it is not hidden inside it.
@@ -102,12 +118,25 @@ class Picture:
         start = beside - length * direction
         thick = 0.04 * sizes.GRAVITY * reach
         return [
-            Shape(GRAVITY, 0, ARROW, (thick, 2.5 * thick, 5.0 * thick), colours.GRAVITY,
-                  tuple(start.tolist()),
-                  points=((0.0, 0.0, 0.0), tuple((length * direction).tolist()))),
-            Shape(GRAVITY, 1, TEXT, self._sizes.text_size, colours.GRAVITY,
-                  tuple((start - 1.5 * text * direction).tolist()),
-                  text=f'{strength:.3g} m/s^2')]
+            Shape(
+                GRAVITY,
+                0,
+                ARROW,
+                (thick, 2.5 * thick, 5.0 * thick),
+                colours.GRAVITY,
+                tuple(start.tolist()),
+                points=((0.0, 0.0, 0.0), tuple((length * direction).tolist())),
+            ),
+            Shape(
+                GRAVITY,
+                1,
+                TEXT,
+                self._sizes.text_size,
+                colours.GRAVITY,
+                tuple((start - 1.5 * text * direction).tolist()),
+                text=f'{strength:.3g} m/s^2',
+            ),
+        ]
 
 
 def _link_names(tree):

@@ -26,9 +26,14 @@ def quaternions(rotations):
     rows[:, 1, 1] = 1.0 - xx + yy - zz
     rows[:, 2, 2] = 1.0 - xx - yy + zz
     rows[:, 3, 3] = 1.0 + xx + yy + zz
-    for i, j, value in ((0, 1, m[:, 0, 1] + m[:, 1, 0]), (0, 2, m[:, 0, 2] + m[:, 2, 0]),
-                        (1, 2, m[:, 1, 2] + m[:, 2, 1]), (0, 3, m[:, 2, 1] - m[:, 1, 2]),
-                        (1, 3, m[:, 0, 2] - m[:, 2, 0]), (2, 3, m[:, 1, 0] - m[:, 0, 1])):
+    for i, j, value in (
+        (0, 1, m[:, 0, 1] + m[:, 1, 0]),
+        (0, 2, m[:, 0, 2] + m[:, 2, 0]),
+        (1, 2, m[:, 1, 2] + m[:, 2, 1]),
+        (0, 3, m[:, 2, 1] - m[:, 1, 2]),
+        (1, 3, m[:, 0, 2] - m[:, 2, 0]),
+        (2, 3, m[:, 1, 0] - m[:, 0, 1]),
+    ):
         rows[:, i, j] = rows[:, j, i] = value
     largest = np.argmax(np.diagonal(rows, axis1=1, axis2=2), axis=1)
     found = rows[np.arange(len(m)), largest]

@@ -94,8 +94,11 @@ def reach(tree):
     length = np.zeros(len(tree.parent) + 1)  # the last one is the base
     for k, parent in enumerate(tree.parent):
         length[k] = length[parent] + np.linalg.norm(tree.placement[k, :3, 3]) + _travel(tree, k)
-    to_masses = [length[k] + np.linalg.norm(J[:3, 3]) / J[3, 3]
-                 for k, J in enumerate(tree.inertia) if J[3, 3] > 0.0]
+    to_masses = [
+        length[k] + np.linalg.norm(J[:3, 3]) / J[3, 3]
+        for k, J in enumerate(tree.inertia)
+        if J[3, 3] > 0.0
+    ]
     longest = max([*length, *to_masses])
     return float(longest) if 0.0 < longest < np.inf else 1.0
 

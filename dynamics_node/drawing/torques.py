@@ -46,8 +46,9 @@ class Torques:
         self._parents = tree.parent[self._rows]
         self._is_prismatic = [bool(tree.kind[row] == PRISMATIC) for row in rows]
         self._radius = [float(sizes.arcs[row]) for row in rows]
-        self._frames = np.array([tree.placement[row, :3, :3] @ frame_around(tree.axis[row])
-                                 for row in rows]).reshape(-1, 3, 3)
+        self._frames = np.array(
+            [tree.placement[row, :3, :3] @ frame_around(tree.axis[row]) for row in rows]
+        ).reshape(-1, 3, 3)
         self._lift = _lifts(tree, rows, sizes)
 
     def shapes(self, poses, gravity_torque, effort, limits):
@@ -73,17 +74,27 @@ class Torques:
         if not self._names:
             return
         # The axes of a joint do not turn with it: where an arc begins stays where it is.
-        parents = np.where((self._parents >= 0)[:, None, None],
-                           poses[self._parents, :3, :3], np.eye(3))
+        parents = np.where(
+            (self._parents >= 0)[:, None, None], poses[self._parents, :3, :3], np.eye(3)
+        )
         turned = parents @ self._frames
         turns = [tuple(turn) for turn in quaternions(turned).tolist()]
         places = [tuple(place) for place in poses[self._rows, :3, 3].tolist()]
-        limits = [limit if limit > 0.0 and math.isfinite(limit) else math.nan
-                  for limit in limits.tolist()]
+        limits = [
+            limit if limit > 0.0 and math.isfinite(limit) else math.nan
+            for limit in limits.tolist()
+        ]
         for i, radius in enumerate(self._radius):
             if not self._is_prismatic[i]:
-                yield Shape(JOINTS, i, DISC, (2.2 * radius, 2.2 * radius, 0.02 * radius),
-                            colours.JOINT, places[i], turns[i])
+                yield Shape(
+                    JOINTS,
+                    i,
+                    DISC,
+                    (2.2 * radius, 2.2 * radius, 0.02 * radius),
+                    colours.JOINT,
+                    places[i],
+                    turns[i],
+                )
         gravity_torque = gravity_torque.tolist()
         for group, values in ((GRAVITY_TORQUE, gravity_torque), (EFFORT, effort.tolist())):
             loads = self._loads(values, limits)
@@ -95,22 +106,41 @@ class Torques:
             out = -1.4 * self._radius[i]  # where the arcs do not begin
             x, y, z = (p + out * a for p, a in zip(places[i], across[i], strict=True))
             place = (x, y, z + self._lift[i])
-            yield Shape(TEXTS, i, TEXT, self._sizes.text_size, colours.TEXT, place,
-                        text=self._text(i, value, limits[i]))
+            yield Shape(
+                TEXTS,
+                i,
+                TEXT,
+                self._sizes.text_size,
+                colours.TEXT,
+                place,
+                text=self._text(i, value, limits[i]),
+            )
 
     def _loads(self, values, limits):
         # Of the limit; where there is none, of the largest effort of its kind.
-        largest = [max((abs(value) for value, kind in zip(values, self._is_prismatic, strict=True)
-                        if kind == wanted and math.isfinite(value)), default=0.0) or 1.0
-                   for wanted in (False, True)]
-        return [value / (largest[kind] if math.isnan(limit) else limit)
-                for value, limit, kind in zip(values, limits, self._is_prismatic, strict=True)]
+        largest = [
+            max(
+                (
+                    abs(value)
+                    for value, kind in zip(values, self._is_prismatic, strict=True)
+                    if kind == wanted and math.isfinite(value)
+                ),
+                default=0.0,
+            )
+            or 1.0
+            for wanted in (False, True)
+        ]
+        return [
+            value / (largest[kind] if math.isnan(limit) else limit)
+            for value, limit, kind in zip(values, limits, self._is_prismatic, strict=True)
+        ]
 
     def _line(self, group, i, load, is_unlimited, place, turn):
         colour = colours.UNLIMITED if is_unlimited else colours.of_load(abs(load))
         width = _WIDTHS[group] * self._radius[i]
         points = (_arrow if self._is_prismatic[i] else _arc)(
-            _PLACES[group] * self._radius[i], load, self._radius[i])
+            _PLACES[group] * self._radius[i], load, self._radius[i]
+        )
         return Shape(group, i, LINE, (width,) * 3, colour, place, turn, tuple(points))
 
     def _text(self, i, value, limit):
@@ -133,11 +163,15 @@ def _arc(at, load, radius):
     angle = min(max(abs(load) * FULL, _SHORTEST), LONGEST)
     steps = max(math.ceil(angle / _STEP), 1)
     sign = -1.0 if load < 0.0 else 1.0
-    points = [(at * math.cos(t), sign * at * math.sin(t), 0.0)
-              for t in (angle * k / steps for k in range(steps + 1))]
+    points = [
+        (at * math.cos(t), sign * at * math.sin(t), 0.0)
+        for t in (angle * k / steps for k in range(steps + 1))
+    ]
     back = angle - min(_HEAD * radius / at, angle)
-    barbs = [((at + side) * math.cos(back), sign * (at + side) * math.sin(back), 0.0)
-             for side in (0.5 * _HEAD * radius, -0.5 * _HEAD * radius)]
+    barbs = [
+        ((at + side) * math.cos(back), sign * (at + side) * math.sin(back), 0.0)
+        for side in (0.5 * _HEAD * radius, -0.5 * _HEAD * radius)
+    ]
     return [*points, barbs[0], points[-1], barbs[1]]
 
 

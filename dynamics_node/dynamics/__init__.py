@@ -18,6 +18,19 @@ from .robot_model import RobotModel
 from .terms import DynamicsTerms
 from .trajectory import complete_trajectory, Trajectory
 
-__all__ = ['Compensation', 'DynamicsTerms', 'Friction', 'JointSelection', 'MaxPayload',
-           'MomentumObserver', 'OverLimit', 'Payload', 'RobotModel', 'Trajectory',
-           'complete_trajectory', 'forward_dynamics_held', 'one_off_model', 'over_limit']
+__all__ = [
+    'Compensation',
+    'DynamicsTerms',
+    'Friction',
+    'JointSelection',
+    'MaxPayload',
+    'MomentumObserver',
+    'OverLimit',
+    'Payload',
+    'RobotModel',
+    'Trajectory',
+    'complete_trajectory',
+    'forward_dynamics_held',
+    'one_off_model',
+    'over_limit',
+]

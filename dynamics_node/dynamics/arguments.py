@@ -27,8 +27,10 @@ def check_link(links, link, field='link'):
     """
     if link not in links:
         shown = ', '.join(list(links)[:_MOST_SHOWN]) + (', ...' * (len(links) > _MOST_SHOWN))
-        raise ArgumentError(f'{field}: {quoted(link)} is not a link of the robot'
-                            + (suggestion(link, links) or f'; expected one of {shown}'))
+        raise ArgumentError(
+            f'{field}: {quoted(link)} is not a link of the robot'
+            + (suggestion(link, links) or f'; expected one of {shown}')
+        )
 
 
 def gravity_vector(value):
@@ -90,8 +92,10 @@ def per_joint(name, joint_names, value):
     except (TypeError, ValueError):
         array = np.full(1, np.nan)
     if array.shape not in ((), (count,)):
-        raise ArgumentError(f'{name}: expected one number, or {count} for '
-                            f'{", ".join(joint_names)}; got shape {array.shape}')
+        raise ArgumentError(
+            f'{name}: expected one number, or {count} for '
+            f'{", ".join(joint_names)}; got shape {array.shape}'
+        )
     if not (np.isfinite(array) & (array >= 0.0)).all():
         raise ArgumentError(f'{name}: expected finite numbers >= 0, got {value!r}')
     array = np.broadcast_to(array, (count,)).copy()

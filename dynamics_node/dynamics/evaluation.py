@@ -26,7 +26,8 @@ SHAPES = {
     'coriolis_matrix': lambda n: ((n, n),),
     'gravity_torque': lambda n: ((n,),),
     'inverse_dynamics': lambda n: ((n,),),
-    'forward_dynamics': lambda n: ((n,),)}
+    'forward_dynamics': lambda n: ((n,),),
+}
 
 
 class Evaluation:
@@ -62,8 +63,9 @@ class Evaluation:
         self._n = len(joint_names)
         self._state_shape = (self._n,)
         self._shapes = {name: shapes(self._n) for name, shapes in SHAPES.items()}
-        self._one_shapes = {name: tuple((1, *shape) for shape in shapes)
-                            for name, shapes in self._shapes.items()}
+        self._one_shapes = {
+            name: tuple((1, *shape) for shape in shapes) for name, shapes in self._shapes.items()
+        }
 
     def __reduce__(self):
         return type(self), (self.packed, self._joint_names, self.specialisation)
@@ -102,8 +104,10 @@ class Evaluation:
     def _fitted(self, names, arrays):
         for name, array in zip(names, arrays, strict=True):
             if array.shape[-1:] != (self._n,):
-                raise ArgumentError(f'{name}: expected shape (..., {self._n}) for joints '
-                                    f'{list(self._joint_names)}, got {array.shape}')
+                raise ArgumentError(
+                    f'{name}: expected shape (..., {self._n}) for joints '
+                    f'{list(self._joint_names)}, got {array.shape}'
+                )
         return _broadcast(names, arrays)
 
     def dynamics(self, q, qd, *, out=None, threads=None):
@@ -142,12 +146,18 @@ class Evaluation:
         qdd, sound = np.empty_like(q), np.empty(len(q), dtype=bool)
         if self.specialisation.code is None:
             self.specialisation.count(len(q))
-        _in_pieces(lambda arrays, outputs: closed_form.forward_dynamics(
-            *self.packed, *arrays, *outputs), [q, qd, tau], [qdd, sound], len(q), threads)
+        _in_pieces(
+            lambda arrays, outputs: closed_form.forward_dynamics(*self.packed, *arrays, *outputs),
+            [q, qd, tau],
+            [qdd, sound],
+            len(q),
+            threads,
+        )
         if not sound.all():
             raise SingularMassMatrixError(
                 'the mass matrix is not positive definite, expected inertia behind every joint: '
-                'check the <inertial> of the moving links')
+                'check the <inertial> of the moving links'
+            )
         return qdd.reshape(*lead, self._n)
 
     def kinetic_energy(self, q, qd):
@@ -202,23 +212,34 @@ class Evaluation:
             outputs = [np.empty((count, *shape)) for shape in shapes]
         else:
             _check_out(out, [(*lead, *shape) for shape in shapes], arrays)
-            outputs = [array.reshape(count, *shape)
-                       for array, shape in zip(out, shapes, strict=True)]
+            outputs = [
+                array.reshape(count, *shape) for array, shape in zip(out, shapes, strict=True)
+            ]
         code = self.specialisation.code
         if code is None:
             self.specialisation.count(count)
-        _in_pieces(lambda arrays, outputs: self._compute(code, name, arrays, outputs),
-                   arrays, outputs, count, threads)
+        _in_pieces(
+            lambda arrays, outputs: self._compute(code, name, arrays, outputs),
+            arrays,
+            outputs,
+            count,
+            threads,
+        )
         if out is not None:
             return out
         if not lead:
             return [output[0] for output in outputs]
-        return [output.reshape(*lead, *shape)
-                for output, shape in zip(outputs, shapes, strict=True)]
+        return [
+            output.reshape(*lead, *shape) for output, shape in zip(outputs, shapes, strict=True)
+        ]
 
     def _is_state(self, array):
-        return (type(array) is np.ndarray and array.shape == self._state_shape
-                and array.dtype is _FLOAT and array.flags.carray)
+        return (
+            type(array) is np.ndarray
+            and array.shape == self._state_shape
+            and array.dtype is _FLOAT
+            and array.flags.carray
+        )
 
     # One state, as a control loop has it, straight to the kernel: the Python around it would
     # take longer than the formulas. Machine code for one state stands in for the method.
@@ -248,8 +269,12 @@ def _gravity_torque(structure, numbers, q, G):
     closed_form.gravity_torque(structure, numbers, q, G, np.empty(len(q)))
 
 
-_KERNELS = {'dynamics': closed_form.dynamics, 'mass_matrix': closed_form.mass_matrix,
-            'gravity_torque': _gravity_torque, 'inverse_dynamics': closed_form.inverse_dynamics}
+_KERNELS = {
+    'dynamics': closed_form.dynamics,
+    'mass_matrix': closed_form.mass_matrix,
+    'gravity_torque': _gravity_torque,
+    'inverse_dynamics': closed_form.inverse_dynamics,
+}
 
 
 def _in_pieces(compute, arrays, outputs, count, threads):
@@ -290,8 +315,10 @@ def _checked_threads(threads):
     except TypeError:
         threads = 0
     if threads < 1:
-        raise ArgumentError('threads: expected an integer of at least 1, or None for as many as '
-                            'this process may use')
+        raise ArgumentError(
+            'threads: expected an integer of at least 1, or None for as many as '
+            'this process may use'
+        )
     return threads
 
 
@@ -304,15 +331,20 @@ def _check_out(arrays, shapes, inputs):
         raise ArgumentError(f'out: expected {len(shapes)} arrays, got {len(arrays)}')
     for array in arrays:
         if not (type(array) is np.ndarray and array.dtype == _FLOAT and array.flags.carray):
-            raise ArgumentError('out: expected writeable, contiguous float64 arrays, got '
-                                f'{type(array).__name__}; take what an earlier call has returned')
+            raise ArgumentError(
+                'out: expected writeable, contiguous float64 arrays, got '
+                f'{type(array).__name__}; take what an earlier call has returned'
+            )
     if [array.shape for array in arrays] != shapes:
-        raise ArgumentError(f'out: expected shapes {shapes}, '
-                            f'got {[array.shape for array in arrays]}')
+        raise ArgumentError(
+            f'out: expected shapes {shapes}, got {[array.shape for array in arrays]}'
+        )
     for i, array in enumerate(arrays):
         if any(np.may_share_memory(array, other) for other in (*inputs, *arrays[:i])):
-            raise ArgumentError('out: expected arrays of their own, got memory that an argument '
-                                'or another one of them uses too')
+            raise ArgumentError(
+                'out: expected arrays of their own, got memory that an argument '
+                'or another one of them uses too'
+            )
 
 
 def _plain(value):
@@ -327,6 +359,7 @@ def _broadcast(names, arrays):
     try:
         return [np.array(array, order='C') for array in np.broadcast_arrays(*arrays)]
     except ValueError as error:
-        shapes = ', '.join(f'{name} {array.shape}'
-                           for name, array in zip(names, arrays, strict=True))
+        shapes = ', '.join(
+            f'{name} {array.shape}' for name, array in zip(names, arrays, strict=True)
+        )
         raise ArgumentError(f'expected batch axes that fit, got {shapes}') from error

@@ -77,7 +77,11 @@ def make_friction(joint_names, viscous, coulomb, smoothing_velocity):
     """
     smoothing = per_joint('smoothing_velocity', joint_names, smoothing_velocity)
     if not (smoothing > 0.0).all():
-        raise ArgumentError('smoothing_velocity: expected numbers > 0, rad/s or m/s, got '
-                            f'{smoothing.tolist()}')
-    return Friction(per_joint('viscous', joint_names, viscous),
-                    per_joint('coulomb', joint_names, coulomb), smoothing)
+        raise ArgumentError(
+            f'smoothing_velocity: expected numbers > 0, rad/s or m/s, got {smoothing.tolist()}'
+        )
+    return Friction(
+        per_joint('viscous', joint_names, viscous),
+        per_joint('coulomb', joint_names, coulomb),
+        smoothing,
+    )

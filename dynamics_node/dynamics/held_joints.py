@@ -45,7 +45,8 @@ def forward_dynamics_held(model, index, q, qd, tau):
     if (margins <= 0.0).any():
         raise SingularMassMatrixError(
             'the mass matrix of these joints is not positive definite, expected inertia behind '
-            'every joint: check the <inertial> of the moving links')
+            'every joint: check the <inertial> of the moving links'
+        )
     result = np.zeros(len(q))
     result[index] = qdd
     return result

@@ -45,17 +45,21 @@ class JointSelection:
         available = robot.joint_names
         self.names = tuple(names) or available
         self._available = available
-        self._leaders = {name: available[place] for name, place in
-                         zip(robot.tree.body_names, robot.tree.coordinate, strict=True)}
+        self._leaders = {
+            name: available[place]
+            for name, place in zip(robot.tree.body_names, robot.tree.coordinate, strict=True)
+        }
         # Counted once: looking for each name among all takes seconds for ten thousand.
         count = Counter(self.names)
         known = set(available)
         wrong = self._unknown([name for name in count if name not in known], available)
         wrong += _listed([name for name in count if count[name] > 1], 'is given twice')
         if wrong:
-            raise ArgumentError(f'joints: {"; ".join(wrong)}; available: '
-                                + ', '.join(available[:_MOST_AVAILABLE])
-                                + (', ...' if len(available) > _MOST_AVAILABLE else ''))
+            raise ArgumentError(
+                f'joints: {"; ".join(wrong)}; available: '
+                + ', '.join(available[:_MOST_AVAILABLE])
+                + (', ...' if len(available) > _MOST_AVAILABLE else '')
+            )
         place = {name: i for i, name in enumerate(available)}
         self.index = np.array([place[name] for name in self.names], dtype=np.intp)
 
@@ -81,8 +85,10 @@ class JointSelection:
         if not names:
             return np.arange(len(self.names))
         if len(names) != len(self.names) or set(names) != set(self.names):
-            raise ArgumentError(f'joint_names: {"; ".join(self._differences(names))}; expected '
-                                f'each of {len(self.names)} joints once, or no name at all')
+            raise ArgumentError(
+                f'joint_names: {"; ".join(self._differences(names))}; expected '
+                f'each of {len(self.names)} joints once, or no name at all'
+            )
         return np.array([self.names.index(name) for name in names], dtype=np.intp)
 
     def _differences(self, names):
@@ -97,11 +103,17 @@ class JointSelection:
         not_chosen = [name for name in unknown if name in movable]
         followers = [name for name in unknown if name in self._leaders and name not in movable]
         strange = [name for name in unknown if name not in self._leaders]
-        return [*_listed(strange, 'is not a joint that can be moved',
-                         lambda name: suggestion(name, expected)),
-                *_listed(not_chosen, 'is not one of the chosen joints'),
-                *_listed(followers, 'follows',
-                         lambda name: f' {quoted(self._leaders[name])}: leave it out')]
+        return [
+            *_listed(
+                strange,
+                'is not a joint that can be moved',
+                lambda name: suggestion(name, expected),
+            ),
+            *_listed(not_chosen, 'is not one of the chosen joints'),
+            *_listed(
+                followers, 'follows', lambda name: f' {quoted(self._leaders[name])}: leave it out'
+            ),
+        ]
 
 
 def _listed(names, what, rest=lambda name: ''):

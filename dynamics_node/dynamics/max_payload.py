@@ -54,8 +54,11 @@ class MaxPayload(NamedTuple):
         if self.mass.size == 0:
             raise ArgumentError('largest payload: expected at least one state, got none')
         point = np.unravel_index(np.argmin(self.mass), self.mass.shape)
-        return (float(self.mass[point]), int(self.joint[point]),
-                tuple(int(index) for index in point))
+        return (
+            float(self.mass[point]),
+            int(self.joint[point]),
+            tuple(int(index) for index in point),
+        )
 
 
 def max_payload(model, q, link, point, qd, qdd, effort_limits):
@@ -97,23 +100,33 @@ def max_payload(model, q, link, point, qd, qdd, effort_limits):
     body, position = _in_body(model.tree, link, point)
     effort = model.inverse_dynamics(q, qd, qdd)
     with np.errstate(all='ignore'):  # a point beyond all robots: NaN, and so is the mass
-        per_kg = _per_kilogram(model, body, position,
-                               [np.broadcast_to(np.asarray(value, dtype=float), effort.shape)
-                                for value in (q, qd, qdd)])
+        per_kg = _per_kilogram(
+            model,
+            body,
+            position,
+            [
+                np.broadcast_to(np.asarray(value, dtype=float), effort.shape)
+                for value in (q, qd, qdd)
+            ],
+        )
     with np.errstate(all='ignore'):  # no force or no limit: infinite, or not used
-        mass = np.where(per_kg == 0.0, np.inf,
-                        (limits - np.sign(per_kg) * effort) / np.abs(per_kg))
+        mass = np.where(
+            per_kg == 0.0, np.inf, (limits - np.sign(per_kg) * effort) / np.abs(per_kg)
+        )
         excess = np.where(np.abs(effort) > limits, np.abs(effort) / limits, 0.0)
     mass[np.broadcast_to(np.isnan(limits), mass.shape)] = np.inf
     # Joints in the last axis; one more, always infinite, stands for "none".
-    mass, excess = (np.concatenate((values, np.full((*effort.shape[:-1], 1), fill)), axis=-1)
-                    for values, fill in ((mass, np.inf), (excess, 0.0)))
+    mass, excess = (
+        np.concatenate((values, np.full((*effort.shape[:-1], 1), fill)), axis=-1)
+        for values, fill in ((mass, np.inf), (excess, 0.0))
+    )
     least, over = mass.min(axis=-1), (excess > 0.0).any(axis=-1)
     joint = np.where(np.isinf(least), n, mass.argmin(axis=-1))
     joint, least = np.where(over, excess.argmax(axis=-1), joint), np.where(over, 0.0, least)
     unknown = np.isnan(effort).any(axis=-1) | np.isnan(per_kg).any(axis=-1)
-    return MaxPayload(np.where(unknown, np.nan, least),
-                      np.where(unknown | (joint == n), -1, joint))
+    return MaxPayload(
+        np.where(unknown, np.nan, least), np.where(unknown | (joint == n), -1, joint)
+    )
 
 
 def _in_body(tree, link, point):
@@ -121,8 +134,10 @@ def _in_body(tree, link, point):
     check_link(tree.links, link)
     point = np.asarray(point, dtype=float)
     if point.shape != (3,) or not np.isfinite(point).all():
-        raise ArgumentError('point: expected three finite numbers in the frame of the link, m, '
-                            f'got {point.tolist()}')
+        raise ArgumentError(
+            'point: expected three finite numbers in the frame of the link, m, '
+            f'got {point.tolist()}'
+        )
     frame = tree.links[link]
     return frame.body, frame.placement @ np.append(point, 1.0)
 
@@ -136,8 +151,9 @@ def _per_kilogram(model, body, position, states):
     inertia[body] = np.outer(position, position)  # (2) of a point mass of 1 kg
     q, qd, qdd = (_beside_carriage(value.reshape(-1, shape[-1])) for value in states)
     effort = np.empty_like(q)
-    closed_form.inverse_dynamics(*_on_carriage(*pack(tree, model.gravity, inertia)), q, qd, qdd,
-                                 effort)
+    closed_form.inverse_dynamics(
+        *_on_carriage(*pack(tree, model.gravity, inertia)), q, qd, qdd, effort
+    )
     # What pushes the carriage is the force that the kilogram needs, N.
     force = np.linalg.norm(effort[:, -3:], axis=1)
     effort = effort[:, :-3]
@@ -150,13 +166,15 @@ def _on_carriage(structure, numbers):
     # The whole tree on three prismatic joints along the axes of the base, which stand still:
     # their efforts are the force on it. They come first, and are the last three coordinates.
     count = closed_form.joint_count(structure)
-    rails = np.array([(-1, PRISMATIC, count), (0, PRISMATIC, count + 1),
-                      (1, PRISMATIC, count + 2)], dtype=np.int64)
+    rails = np.array(
+        [(-1, PRISMATIC, count), (0, PRISMATIC, count + 1), (1, PRISMATIC, count + 2)],
+        dtype=np.int64,
+    )
     structure = structure.copy()
     structure[:, closed_form.PARENT] += 3  # the base, -1, becomes the last rail
     rows = np.zeros((3, closed_form.WIDTH))
-    rows[:, closed_form.ROTATION:closed_form.TRANSLATION] = np.eye(3).ravel()
-    rows[:, closed_form.AXIS:closed_form.INERTIA] = np.eye(3)
+    rows[:, closed_form.ROTATION : closed_form.TRANSLATION] = np.eye(3).ravel()
+    rows[:, closed_form.AXIS : closed_form.INERTIA] = np.eye(3)
     rows[:, closed_form.MULTIPLIER] = 1.0
     packed = np.concatenate((rails, structure)), np.concatenate((rows, numbers))
     for array in packed:
@@ -176,8 +194,9 @@ def _rounding(tree, body, position, q):
         chain.append(body)
         reach += np.linalg.norm(tree.placement[body, :3, 3])
         if tree.kind[body] == PRISMATIC:
-            reach += np.abs(tree.multiplier[body] * q[:, tree.coordinate[body]]
-                            + tree.offset[body])
+            reach += np.abs(
+                tree.multiplier[body] * q[:, tree.coordinate[body]] + tree.offset[body]
+            )
         body = tree.parent[body]
     result = np.zeros((len(q), len(tree.joint_names)))
     for k in chain:

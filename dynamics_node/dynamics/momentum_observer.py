@@ -104,8 +104,10 @@ class MomentumObserver:
 
         """
         if tuple(robot.joint_names) != self._joint_names:
-            raise ArgumentError(f'robot: expected the joints {", ".join(self._joint_names)}, got '
-                                f'{", ".join(robot.joint_names)}: make another observer')
+            raise ArgumentError(
+                f'robot: expected the joints {", ".join(self._joint_names)}, got '
+                f'{", ".join(robot.joint_names)}: make another observer'
+            )
         self._robot = robot
         if self._state is not None:
             # What the other model makes of the last state: a momentum that only the models tell
@@ -183,9 +185,11 @@ class MomentumObserver:
         q, qd, effort = (np.array(value, dtype=float) for value in (q, qd, effort))
         for name, value, count in (('q', q, n), ('qd', qd, n), ('effort', effort, m)):
             if value.shape != (count,):
-                raise ArgumentError(f'{name}: expected shape ({count},), one state of '
-                                    f'{"all" if name != "effort" else "the chosen"} joints, got '
-                                    f'{value.shape}')
+                raise ArgumentError(
+                    f'{name}: expected shape ({count},), one state of '
+                    f'{"all" if name != "effort" else "the chosen"} joints, got '
+                    f'{value.shape}'
+                )
         return q, np.where(self._is_other & np.isnan(qd), 0.0, qd), effort
 
     def _balance(self, q, qd, effort):
@@ -195,7 +199,7 @@ class MomentumObserver:
         with np.errstate(over='ignore', invalid='ignore'):  # however large the numbers are
             terms = self._robot.dynamics(q, qd)
             momentum = terms.mass_matrix[rows] @ qd
-            known = qd @ terms.coriolis_matrix[:, rows] - terms.gravity_torque[rows]     # (33)
+            known = qd @ terms.coriolis_matrix[:, rows] - terms.gravity_torque[rows]  # (33)
             return momentum, effort + known - self._robot.friction_torque(qd)[rows]
 
 

@@ -50,12 +50,14 @@ def over_limit(efforts, limits):
     """
     efforts = np.abs(np.asarray(efforts, dtype=float))
     if efforts.ndim != 2 or len(efforts) == 0:
-        raise ArgumentError('efforts: expected shape (N, n) with at least one point, got '
-                            f'{efforts.shape}')
+        raise ArgumentError(
+            f'efforts: expected shape (N, n) with at least one point, got {efforts.shape}'
+        )
     limits = checked_limits(limits, efforts.shape[1])
     over = ~(efforts <= limits) & ~np.isnan(limits)
-    return OverLimit(np.flatnonzero(over.any(axis=1)), np.flatnonzero(over.any(axis=0)),
-                     efforts.max(axis=0))
+    return OverLimit(
+        np.flatnonzero(over.any(axis=1)), np.flatnonzero(over.any(axis=0)), efforts.max(axis=0)
+    )
 
 
 def checked_limits(limits, count):
@@ -81,10 +83,13 @@ def checked_limits(limits, count):
     """
     limits = np.asarray(limits, dtype=float)
     if limits.shape != (count,):
-        raise ArgumentError(f'effort limits: expected shape ({count},), one per joint, got '
-                            f'{limits.shape}')
+        raise ArgumentError(
+            f'effort limits: expected shape ({count},), one per joint, got {limits.shape}'
+        )
     if (limits < 0.0).any():
         joint = int(np.argmax(limits < 0.0))
-        raise ArgumentError(f'effort limits: joint {joint}: expected at least 0, or NaN for '
-                            f'none, got {float(limits[joint])}')
+        raise ArgumentError(
+            f'effort limits: joint {joint}: expected at least 0, or NaN for '
+            f'none, got {float(limits[joint])}'
+        )
     return limits

@@ -79,17 +79,20 @@ def make_payload(links, link, mass, com, inertia):
         return None
     check_link(links, link)
     com = _finite('payload com', com, (3,), 'm')
-    inertia = _finite('payload inertia', np.zeros((3, 3)) if inertia is None else inertia,
-                      (3, 3), 'kg m^2')
+    inertia = _finite(
+        'payload inertia', np.zeros((3, 3)) if inertia is None else inertia, (3, 3), 'kg m^2'
+    )
     if not np.isfinite(mass):
         raise ArgumentError(f'payload mass: expected a finite number, kg, got {mass}')
     payload = Payload(link, mass, com, inertia)
     with np.errstate(over='ignore', invalid='ignore'):  # said in words instead
         matrix = payload.pseudo_inertia
     if not np.isfinite(matrix).all():
-        raise ArgumentError('payload: expected second moments that are finite, got them of mass '
-                            f'{mass:g}, com {com.tolist()} and an inertia tensor of up to '
-                            f'{np.abs(inertia).max():g}')
+        raise ArgumentError(
+            'payload: expected second moments that are finite, got them of mass '
+            f'{mass:g}, com {com.tolist()} and an inertia tensor of up to '
+            f'{np.abs(inertia).max():g}'
+        )
     check_physical(matrix)
     return payload
 
@@ -127,7 +130,8 @@ def _finite(name, value, shape, unit):
     except (TypeError, ValueError):
         array = np.empty(0)
     if array.shape != shape or not np.isfinite(array).all():
-        raise ArgumentError(f'{name}: expected finite numbers of shape {shape}, {unit}, '
-                            f'got {value!r}')
+        raise ArgumentError(
+            f'{name}: expected finite numbers of shape {shape}, {unit}, got {value!r}'
+        )
     array.flags.writeable = False
     return array

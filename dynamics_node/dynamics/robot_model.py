@@ -43,8 +43,16 @@ class RobotModel:
 
     """
 
-    def __init__(self, tree, gravity=STANDARD_GRAVITY, *, payload=None, rotor_inertia=0.0,
-                 friction=None, specialisation=None):
+    def __init__(
+        self,
+        tree,
+        gravity=STANDARD_GRAVITY,
+        *,
+        payload=None,
+        rotor_inertia=0.0,
+        friction=None,
+        specialisation=None,
+    ):
         """
         Make the model of a kinematic tree; most users want `from_urdf`.
 
@@ -74,7 +82,8 @@ class RobotModel:
         self._payload = payload
         self._rotor_inertia = per_joint('rotor_inertia', tree.joint_names, rotor_inertia)
         self._friction = friction or make_friction(
-            tree.joint_names, tree.friction[:, 0], tree.friction[:, 1], SMOOTHING_VELOCITY)
+            tree.joint_names, tree.friction[:, 0], tree.friction[:, 1], SMOOTHING_VELOCITY
+        )
         self._inertia = loaded_inertia(tree, payload)
         self._specialisation = specialisation or Specialisation(*pack(tree, self._gravity))
         if self._inertia is not tree.inertia or self._rotor_inertia.any():
@@ -114,16 +123,17 @@ class RobotModel:
 
     def __getstate__(self):
         # Machine code stays where it is: its addresses mean nothing in another process.
-        return {name: value for name, value in vars(self).items()
-                if not inspect.isbuiltin(value)}
+        return {name: value for name, value in vars(self).items() if not inspect.isbuiltin(value)}
 
     def __setstate__(self, state):
         vars(self).update(state)
         self._evaluation.specialisation.attach(self)
 
     def __repr__(self):
-        return (f'RobotModel({self._n} joints, {self.total_mass:.6g} kg moving, '
-                f'gravity {self._gravity.tolist()} m/s^2)')
+        return (
+            f'RobotModel({self._n} joints, {self.total_mass:.6g} kg moving, '
+            f'gravity {self._gravity.tolist()} m/s^2)'
+        )
 
     @property
     def joint_names(self):
@@ -311,15 +321,24 @@ class RobotModel:
 
         """
         old = self._friction
-        return self._with(friction=make_friction(
-            self.joint_names, old.viscous if viscous is None else viscous,
-            old.coulomb if coulomb is None else coulomb,
-            old.smoothing_velocity if smoothing_velocity is None else smoothing_velocity))
+        return self._with(
+            friction=make_friction(
+                self.joint_names,
+                old.viscous if viscous is None else viscous,
+                old.coulomb if coulomb is None else coulomb,
+                old.smoothing_velocity if smoothing_velocity is None else smoothing_velocity,
+            )
+        )
 
     def _with(self, **changes):
-        arguments = {'gravity': self._gravity, 'payload': self._payload,
-                     'rotor_inertia': self._rotor_inertia, 'friction': self._friction,
-                     'specialisation': self._specialisation, **changes}
+        arguments = {
+            'gravity': self._gravity,
+            'payload': self._payload,
+            'rotor_inertia': self._rotor_inertia,
+            'friction': self._friction,
+            'specialisation': self._specialisation,
+            **changes,
+        }
         return type(self)(self._tree, **arguments)
 
     @property
@@ -363,10 +382,19 @@ class RobotModel:
             # A method of a subclass, or that somebody has put in its place, stays.
             if getattr(type(self), name) is getattr(RobotModel, name) and name not in vars(self):
                 fallback = getattr(self._evaluation, name)
-                setattr(self, name, make_callable(
-                    code.loaded, name, shapes(self._n), fallback,
-                    getattr(RobotModel, name).__doc__,
-                    DynamicsTerms, self._evaluation.packed[1]))
+                setattr(
+                    self,
+                    name,
+                    make_callable(
+                        code.loaded,
+                        name,
+                        shapes(self._n),
+                        fallback,
+                        getattr(RobotModel, name).__doc__,
+                        DynamicsTerms,
+                        self._evaluation.packed[1],
+                    ),
+                )
 
     def mass_matrix(self, q, *, out=None, threads=None):
         """
@@ -752,12 +780,15 @@ class RobotModel:
         """
         motion = complete_trajectory(time, positions, velocities, accelerations)
         if motion.positions.shape[1] != self._n:
-            raise ArgumentError(f'positions: expected shape (N, {self._n}) for joints '
-                                f'{list(self.joint_names)}, got {motion.positions.shape}')
+            raise ArgumentError(
+                f'positions: expected shape (N, {self._n}) for joints '
+                f'{list(self.joint_names)}, got {motion.positions.shape}'
+            )
         return self.inverse_dynamics(motion.positions, motion.velocities, motion.accelerations)
 
-    def max_payload(self, q, link, point=(0.0, 0.0, 0.0), *, qd=None, qdd=None,
-                    effort_limits=None):
+    def max_payload(
+        self, q, link, point=(0.0, 0.0, 0.0), *, qd=None, qdd=None, effort_limits=None
+    ):
         """
         Return the largest point mass that a link may carry within all effort limits.
 
@@ -799,6 +830,12 @@ class RobotModel:
         """
         rest = np.zeros(self._n)
         unloaded = self if self._payload is None else self._with(payload=None)
-        return max_payload(unloaded, q, link, point, rest if qd is None else qd,
-                           rest if qdd is None else qdd,
-                           self.effort_limits if effort_limits is None else effort_limits)
+        return max_payload(
+            unloaded,
+            q,
+            link,
+            point,
+            rest if qd is None else qd,
+            rest if qdd is None else qdd,
+            self.effort_limits if effort_limits is None else effort_limits,
+        )

@@ -56,11 +56,13 @@ class Specialisation:
         self._loads = False
         self._process = None
         self._loader: threading.Thread | None = None
-        self._wanted = (len(structure) > 0 and specialised.is_wanted()
-                        and specialised.is_supported())
+        self._wanted = (
+            len(structure) > 0 and specialised.is_wanted() and specialised.is_supported()
+        )
         # Fetched at once too, if it is on disk: a first payload may come in a control loop.
         self.for_any_inertia = (
-            None if any_inertia else type(self)(structure, numbers, any_inertia=True))
+            None if any_inertia else type(self)(structure, numbers, any_inertia=True)
+        )
         if self._wanted:
             self._take()
 
@@ -171,5 +173,8 @@ class Specialisation:
 
     def _give_up(self, error):
         self._wanted = False
-        _log.warning('no machine code for this robot, the general kernel goes on: %s: %s',
-                     type(error).__name__, error)
+        _log.warning(
+            'no machine code for this robot, the general kernel goes on: %s: %s',
+            type(error).__name__,
+            error,
+        )

@@ -35,8 +35,12 @@ def spline_slopes(time, values, given, slopes):
     ends = np.union1d(np.flatnonzero(given), [0, last])
     for begin, end in itertools.pairwise(ends):
         if end - begin > 1 or not (given[begin] and given[end]):
-            _fill(time[begin:end + 1], values[begin:end + 1], given[[begin, end]],
-                  slopes[begin:end + 1])
+            _fill(
+                time[begin : end + 1],
+                values[begin : end + 1],
+                given[[begin, end]],
+                slopes[begin : end + 1],
+            )
 
 
 def _fill(time, values, given, slopes):
@@ -50,8 +54,11 @@ def _fill(time, values, given, slopes):
         return
     # Loading it takes as long as loading the rest of the library.
     from scipy.interpolate import CubicSpline
-    kinds = tuple((1, slopes[end]) if is_given else 'not-a-knot'
-                  for end, is_given in zip((0, -1), given, strict=True))
+
+    kinds = tuple(
+        (1, slopes[end]) if is_given else 'not-a-knot'
+        for end, is_given in zip((0, -1), given, strict=True)
+    )
     inner = slice(1 if given[0] else 0, -1 if given[1] else None)
     try:
         slopes[inner] = CubicSpline(time, values, bc_type=kinds)(time, 1)[inner]

@@ -77,15 +77,15 @@ def complete_trajectory(time, positions, velocities=None, accelerations=None):
     """
     time, positions = _points(time, positions)
     velocities, has_velocity = _derivatives('velocities', velocities, positions.shape)
-    accelerations, has_acceleration = _derivatives('accelerations', accelerations,
-                                                   positions.shape)
+    accelerations, has_acceleration = _derivatives('accelerations', accelerations, positions.shape)
     obtained = ''
     if not (has_velocity.all() and has_acceleration.all()):
         if len(time) > 1:
             _require_increasing(time)
         with np.errstate(all='ignore'):  # what overflows is told below
-            obtained = _fill(time, positions, velocities, has_velocity, accelerations,
-                             has_acceleration)
+            obtained = _fill(
+                time, positions, velocities, has_velocity, accelerations, has_acceleration
+            )
         _require_finite(velocities, accelerations)
     for array in (time, positions, velocities, accelerations):
         array.flags.writeable = False
@@ -95,11 +95,11 @@ def complete_trajectory(time, positions, velocities=None, accelerations=None):
 def _points(time, positions):
     time, positions = _numbers('time', time), _numbers('positions', positions)
     if time.ndim != 1 or len(time) == 0:
-        raise ArgumentError('time: expected shape (N,) with at least one point, '
-                            f'got {time.shape}')
+        raise ArgumentError(f'time: expected shape (N,) with at least one point, got {time.shape}')
     if positions.ndim != 2 or len(positions) != len(time):
-        raise ArgumentError(f'positions: expected shape ({len(time)}, n), one row per time, '
-                            f'got {positions.shape}')
+        raise ArgumentError(
+            f'positions: expected shape ({len(time)}, n), one row per time, got {positions.shape}'
+        )
     if not np.isfinite(time).all():
         i = int(np.argmin(np.isfinite(time)))
         raise ArgumentError(f'time: point {i}: expected a finite number, got {time[i]}')
@@ -113,11 +113,16 @@ def _derivatives(name, values, shape):
         return np.full(shape, np.nan), np.zeros(shape[0], dtype=bool)
     values = _numbers(name, values)
     if values.shape != shape:
-        raise ArgumentError(f'{name}: expected the shape of positions, {shape}, '
-                            f'got {values.shape}')
+        raise ArgumentError(
+            f'{name}: expected the shape of positions, {shape}, got {values.shape}'
+        )
     given = ~np.isnan(values).all(axis=1)
-    _refuse(name, values, given[:, None] & ~np.isfinite(values),
-            'a finite number, or NaN for all joints of a point where they are missing')
+    _refuse(
+        name,
+        values,
+        given[:, None] & ~np.isfinite(values),
+        'a finite number, or NaN for all joints of a point where they are missing',
+    )
     return values, given
 
 
@@ -125,31 +130,38 @@ def _numbers(name, values):
     try:
         return np.array(values, dtype=float, order='C')
     except (TypeError, ValueError) as error:
-        raise ArgumentError(f'{name}: expected numbers, as many for each point: '
-                            f'{error}') from error
+        raise ArgumentError(
+            f'{name}: expected numbers, as many for each point: {error}'
+        ) from error
 
 
 def _refuse(name, values, wrong, expected):
     if wrong.any():
         point, joint = np.argwhere(wrong)[0]
-        raise ArgumentError(f'{name}: point {point}, joint {joint}: expected {expected}, '
-                            f'got {values[point, joint]}')
+        raise ArgumentError(
+            f'{name}: point {point}, joint {joint}: expected {expected}, '
+            f'got {values[point, joint]}'
+        )
 
 
 def _require_increasing(time):
     late = np.flatnonzero(~(np.diff(time) > 0.0))
     if len(late):
         i = int(late[0]) + 1
-        raise ArgumentError(f'time: point {i}: expected more than {float(time[i - 1])} s, the '
-                            f'time of the point before, got {float(time[i])} s; or give the '
-                            'velocities and accelerations of all points')
+        raise ArgumentError(
+            f'time: point {i}: expected more than {float(time[i - 1])} s, the '
+            f'time of the point before, got {float(time[i])} s; or give the '
+            'velocities and accelerations of all points'
+        )
 
 
 def _require_finite(velocities, accelerations):
     finite = (np.isfinite(velocities) & np.isfinite(accelerations)).all(axis=1)
     if not finite.all():
-        raise ArgumentError(f'time: point {int(np.argmin(finite))}: expected steps long enough '
-                            'for finite velocities and accelerations, got an overflow')
+        raise ArgumentError(
+            f'time: point {int(np.argmin(finite))}: expected steps long enough '
+            'for finite velocities and accelerations, got an overflow'
+        )
 
 
 def _fill(time, positions, velocities, has_velocity, accelerations, has_acceleration):
@@ -158,8 +170,14 @@ def _fill(time, positions, velocities, has_velocity, accelerations, has_accelera
     if count == 1:
         velocities[~has_velocity] = 0.0
         accelerations[~has_acceleration] = 0.0
-        return _words('velocities', has_velocity, 'zero, the only point is at rest',
-                      'accelerations', has_acceleration, 'zero, the only point is at rest')
+        return _words(
+            'velocities',
+            has_velocity,
+            'zero, the only point is at rest',
+            'accelerations',
+            has_acceleration,
+            'zero, the only point is at rest',
+        )
     spline_slopes(time, positions, has_velocity, velocities)
     if has_velocity[1:-1].any():
         spline_slopes(time, velocities, has_acceleration, accelerations)
@@ -168,9 +186,14 @@ def _fill(time, positions, velocities, has_velocity, accelerations, has_accelera
         curvature = _second_derivatives(time, positions, velocities)
         accelerations[~has_acceleration] = curvature[~has_acceleration]
         source = 'the second derivatives of a cubic spline through the positions'
-    return _words('velocities', has_velocity,
-                  'the slopes of a cubic spline through the positions',
-                  'accelerations', has_acceleration, source)
+    return _words(
+        'velocities',
+        has_velocity,
+        'the slopes of a cubic spline through the positions',
+        'accelerations',
+        has_acceleration,
+        source,
+    )
 
 
 def _second_derivatives(time, values, slopes):

@@ -22,8 +22,21 @@ from .pseudo_inertia import (
 from .solids import box, cylinder, sphere
 
 __all__ = [
-    'ConsistencyReport', 'EquivalentBox', 'axial_moments', 'box', 'check_physical', 'combine',
-    'consistency_report', 'cylinder', 'equivalent_box', 'inertia_tensor_at_com', 'mass_and_com',
-    'planar_moments', 'pseudo_inertia', 'pseudo_inertia_by_integration', 'sphere', 'steiner',
+    'ConsistencyReport',
+    'EquivalentBox',
+    'axial_moments',
+    'box',
+    'check_physical',
+    'combine',
+    'consistency_report',
+    'cylinder',
+    'equivalent_box',
+    'inertia_tensor_at_com',
+    'mass_and_com',
+    'planar_moments',
+    'pseudo_inertia',
+    'pseudo_inertia_by_integration',
+    'sphere',
+    'steiner',
     'transform_pseudo_inertia',
 ]

@@ -66,13 +66,16 @@ def consistency_report(matrix):
     if matrix.shape != (4, 4):
         raise ArgumentError(f'pseudo-inertia: expected shape (4, 4), got {matrix.shape}')
     if not np.all(np.isfinite(matrix)):
-        return ConsistencyReport(('J has entries that are not finite',), np.nan,
-                                 np.full(3, np.nan))
+        return ConsistencyReport(
+            ('J has entries that are not finite',), np.nan, np.full(3, np.nan)
+        )
     scale = np.abs(matrix).max()
     violations = []
     if np.abs(matrix - matrix.T).max() > RELATIVE_TOLERANCE * scale:
-        violations.append('J is not symmetric: J and its transpose differ by '
-                          f'{np.abs(matrix - matrix.T).max():.3g}')
+        violations.append(
+            'J is not symmetric: J and its transpose differ by '
+            f'{np.abs(matrix - matrix.T).max():.3g}'
+        )
     if matrix[3, 3] < 0.0:
         violations.append(f'mass is {matrix[3, 3]:.6g} kg, must be >= 0')
     principal = np.linalg.eigvalsh(_symmetric(inertia_tensor_at_com(matrix)))
@@ -109,8 +112,10 @@ def tensor_violations(principal, tolerance):
     if smallest < -tolerance:
         return [f'smallest principal moment of inertia is {smallest:.3g} kg m^2, must be >= 0']
     if largest > smallest + middle + tolerance:
-        return ['principal moments of inertia violate the triangle inequality: '
-                f'{largest:.6g} > {smallest:.6g} + {middle:.6g} kg m^2']
+        return [
+            'principal moments of inertia violate the triangle inequality: '
+            f'{largest:.6g} > {smallest:.6g} + {middle:.6g} kg m^2'
+        ]
     return []
 
 

@@ -25,8 +25,9 @@ def warm_up():
     closed_form.gravity_torque_of_one(structure, numbers, q[0], vector[0])
     closed_form.inverse_dynamics(structure, numbers, q, q, q, vector)
     closed_form.jacobian(structure, numbers, q, 0, np.zeros(3), np.empty((1, 6, 1)))
-    closed_form.body_poses(structure, numbers, q, np.zeros(1, dtype=np.int64),
-                           np.empty((1, 1, 3, 4)))
+    closed_form.body_poses(
+        structure, numbers, q, np.zeros(1, dtype=np.int64), np.empty((1, 1, 3, 4))
+    )
     specialised.are_ordinary('dynamics', [q, q])
     closed_form.forward_dynamics(structure, numbers, q, q, q, vector, np.empty(1, dtype=bool))
 

@@ -47,20 +47,24 @@ def build_tree(description):
         joint_names=tuple(index),
         body_names=tuple(joint.name for joint in moving),
         parent=np.array([links[joint.parent].body for joint in moving], dtype=np.int64),
-        kind=np.array([PRISMATIC if joint.kind == 'prismatic' else REVOLUTE
-                       for joint in moving], dtype=np.int64),
+        kind=np.array(
+            [PRISMATIC if joint.kind == 'prismatic' else REVOLUTE for joint in moving],
+            dtype=np.int64,
+        ),
         coordinate=np.array([index[leader] for leader, _, _ in resolved], dtype=np.int64),
         multiplier=np.array([multiplier for _, multiplier, _ in resolved], dtype=float),
         offset=np.array([offset for _, _, offset in resolved], dtype=float),
-        placement=_stack([links[joint.parent].placement @ joint.placement for joint in moving],
-                         (4, 4)),
+        placement=_stack(
+            [links[joint.parent].placement @ joint.placement for joint in moving], (4, 4)
+        ),
         axis=_stack([joint.axis for joint in moving], (3,)),
         inertia=inertia[:-1],
         base_inertia=inertia[-1],
         links=links,
         tip_link=description.root,
-        limits=_stack([(joint.lower, joint.upper, joint.velocity, joint.effort)
-                       for joint in free], (4,)),
+        limits=_stack(
+            [(joint.lower, joint.upper, joint.velocity, joint.effort) for joint in free], (4,)
+        ),
         friction=_friction(moving, resolved, index),
         warnings=description.warnings + _massless(moving, inertia),
         hardware_plugins=description.hardware_plugins,
@@ -106,30 +110,39 @@ def _friction(moving, resolved, index):
     # effort multiplied once more.
     friction = np.zeros((len(index), 2))
     for joint, (leader, multiplier, _) in zip(moving, resolved, strict=True):
-        friction[index[leader]] += (multiplier * multiplier * joint.damping,
-                                    abs(multiplier) * joint.friction)
+        friction[index[leader]] += (
+            multiplier * multiplier * joint.damping,
+            abs(multiplier) * joint.friction,
+        )
     return friction
 
 
 def _refuse_overflow(tree):
     # No number of the description is larger, but a chain of mimic joints multiplies what its
     # joints say, and beyond that the dynamics would not be finite.
-    problems = [f'joint {name}: {what} of all joints that it mimics in turn: expected at most '
-                f'{LARGEST:g}, got {value:g}'
-                for what in ('multiplier', 'offset')
-                for name, value in zip(tree.body_names, getattr(tree, what), strict=True)
-                if not abs(value) <= LARGEST]
+    problems = [
+        f'joint {name}: {what} of all joints that it mimics in turn: expected at most '
+        f'{LARGEST:g}, got {value:g}'
+        for what in ('multiplier', 'offset')
+        for name, value in zip(tree.body_names, getattr(tree, what), strict=True)
+        if not abs(value) <= LARGEST
+    ]
     if problems:
         raise RobotDescriptionError(problems)
 
 
 def _massless(moving, inertia):
-    names = [joint.child for joint, matrix in zip(moving, inertia, strict=False)
-             if not matrix[3, 3] > 0.0]
+    names = [
+        joint.child
+        for joint, matrix in zip(moving, inertia, strict=False)
+        if not matrix[3, 3] > 0.0
+    ]
     if not names:
         return ()
-    return ('moving links without mass (add an <inertial>, their weight is not compensated): '
-            + ', '.join(names),)
+    return (
+        'moving links without mass (add an <inertial>, their weight is not compensated): '
+        + ', '.join(names),
+    )
 
 
 def _stack(rows, shape):

@@ -13,8 +13,11 @@ _FINGER_JOINT = re.compile(r'finger|jaw|gripper|thumb|claw', re.IGNORECASE)
 _WRIST = re.compile(r'yaw|pitch|roll|wrist', re.IGNORECASE)
 _DIGIT = re.compile(r'finger|jaw|thumb|claw', re.IGNORECASE)
 # Names of frames at which tools are meant to be, the best first.
-_TOOLS = (re.compile(r'tcp|tool_?cent', re.IGNORECASE), re.compile(r'tool', re.IGNORECASE),
-          re.compile(r'hand|gripper|palm|eef|effector|(^|_)ee($|_)|flange', re.IGNORECASE))
+_TOOLS = (
+    re.compile(r'tcp|tool_?cent', re.IGNORECASE),
+    re.compile(r'tool', re.IGNORECASE),
+    re.compile(r'hand|gripper|palm|eef|effector|(^|_)ee($|_)|flange', re.IGNORECASE),
+)
 
 
 def tip_link(tree, description):
@@ -44,8 +47,11 @@ def tip_link(tree, description):
     links = [link for link, frame in tree.links.items() if frame.body == body]
     # Fingers may be fixed, too.
     links = [link for link in links if not _DIGIT.search(link)] or links
-    inner = {joint.parent for joint in description.joints
-             if not joint.is_movable and not _DIGIT.search(joint.child)}
+    inner = {
+        joint.parent
+        for joint in description.joints
+        if not joint.is_movable and not _DIGIT.search(joint.child)
+    }
     for choice in ([link for link in links if link not in inner], links):
         for pattern in _TOOLS:
             named = [link for link in choice if pattern.search(link)]
@@ -69,8 +75,7 @@ def _last_body(tree, child):
         # Its own names count: what is fixed to a wrist may be called finger, too. A robot that
         # weighs nothing has fingers as well.
         name = tree.body_names[heaviest]
-        is_finger = (behind[heaviest] <= _LIGHT_FINGER * before
-                     and _is_finger(name, child[name]))
+        is_finger = behind[heaviest] <= _LIGHT_FINGER * before and _is_finger(name, child[name])
         if body >= 0 and (is_branch or is_finger):
             return body
         body, before = heaviest, before + float(tree.inertia[heaviest, 3, 3])

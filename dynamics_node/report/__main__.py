@@ -58,6 +58,7 @@ def _run(options):
 def _show(report, options):
     if options.json:
         from .to_json import to_json
+
         json.dump(to_json(report), sys.stdout, indent=1, allow_nan=False)
         print()
     else:
@@ -68,9 +69,15 @@ def _show(report, options):
 def _make(options):
     # numba takes a second: --help and a misspelt path need not wait for it.
     source = sys.stdin.buffer.read() if options.robot == '-' else _path(options.robot)
-    arguments = {'gravity': options.gravity, 'samples': options.samples, 'seed': options.seed,
-                 'link': options.payload_link, 'point': options.payload_point}
+    arguments = {
+        'gravity': options.gravity,
+        'samples': options.samples,
+        'seed': options.seed,
+        'link': options.payload_link,
+        'point': options.payload_point,
+    }
     from .make import make_report
+
     if options.json or not sys.stderr.isatty():
         return make_report(source, **arguments)
     try:
@@ -83,16 +90,16 @@ def _make(options):
 
 def _path(text):
     from pathlib import Path
+
     path = Path(text)
     if not text or path.is_dir() or not path.exists():
-        what = ('is no name' if not text else 'is a folder' if path.is_dir() else
-                'does not exist')
-        raise _UnusableError(f"expected a URDF file, got '{text}', which {what} (in "
-                             f'{Path.cwd()})')
+        what = 'is no name' if not text else 'is a folder' if path.is_dir() else 'does not exist'
+        raise _UnusableError(f"expected a URDF file, got '{text}', which {what} (in {Path.cwd()})")
     if path.is_file():
         return path
     # A pipe, as of <(xacro arm.urdf.xacro) in a shell. More than anybody takes is not read.
     from ..urdf.guard import MAX_BYTES
+
     with path.open('rb') as stream:
         return stream.read(MAX_BYTES + 1)
 
@@ -101,18 +108,22 @@ def _terminal():
     try:
         from . import terminal
     except ModuleNotFoundError as error:
-        raise _UnusableError(f'the report in a terminal needs the Python package rich ({error}): '
-                             'pip install rich; or use --json') from error
+        raise _UnusableError(
+            f'the report in a terminal needs the Python package rich ({error}): '
+            'pip install rich; or use --json'
+        ) from error
     return terminal
 
 
 def _write_html(report, path):
     from .html import write_html
+
     try:
         write_html(report, path)
     except ModuleNotFoundError as error:
-        raise _UnusableError(f'--html needs the Python package plotly ({error}): '
-                             'pip install plotly') from error
+        raise _UnusableError(
+            f'--html needs the Python package plotly ({error}): pip install plotly'
+        ) from error
     print(f'wrote {path}', file=sys.stderr)
 
 

@@ -33,17 +33,23 @@ def payload_entry(study, link, point):
     masses, joints = _at_samples(study, link, point)
     best, least = int(np.argmax(masses)), int(np.argmin(masses))
     everywhere, limiting, where = _everywhere(
-        study, link, point, float(masses[least]), int(joints[least]), study.positions[least])
+        study, link, point, float(masses[least]), int(joints[least]), study.positions[least]
+    )
     under = study.joints_under(link)
     return PayloadEntry(
-        link=link, point=tuple(float(value) for value in point),
-        is_moved=model.tree.links[link].body >= 0, everywhere=everywhere,
+        link=link,
+        point=tuple(float(value) for value in point),
+        is_moved=model.tree.links[link].body >= 0,
+        everywhere=everywhere,
         limiting_joint=None if limiting < 0 else names[limiting],
         limiting_position=None if limiting < 0 else tuple(where.tolist()),
-        best=float(masses[best]), best_position=tuple(study.positions[best].tolist()),
+        best=float(masses[best]),
+        best_position=tuple(study.positions[best].tolist()),
         best_joint=None if joints[best] < 0 else names[joints[best]],
-        unlimited_joints=tuple(names[joint] for joint in sorted(under)
-                               if math.isnan(model.effort_limits[joint])))
+        unlimited_joints=tuple(
+            names[joint] for joint in sorted(under) if math.isnan(model.effort_limits[joint])
+        ),
+    )
 
 
 def _at_samples(study, link, point):

@@ -109,8 +109,7 @@ class Climber:
         # One third and two thirds of a turn from here: with the value here, a discrete Fourier
         # transform.
         angles = q[:, coordinate] + _THIRDS[:, None]
-        at = np.concatenate((value[None],
-                             self._along(joint, coordinate, q, angles[1:]) * sign))
+        at = np.concatenate((value[None], self._along(joint, coordinate, q, angles[1:]) * sign))
         mean = at.mean(axis=0)
         cosine = (2.0 / 3.0) * (at * np.cos(angles)).sum(axis=0)
         sine = (2.0 / 3.0) * (at * np.sin(angles)).sum(axis=0)
@@ -121,7 +120,10 @@ class Climber:
         top += math.tau * np.round((middle - top) / math.tau)
         ends = np.where(
             cosine * math.cos(lower) + sine * math.sin(lower)
-            > cosine * math.cos(upper) + sine * math.sin(upper), lower, upper)
+            > cosine * math.cos(upper) + sine * math.sin(upper),
+            lower,
+            upper,
+        )
         best = np.where((top >= lower) & (top <= upper), top, ends)
         return best, mean + cosine * np.cos(best) + sine * np.sin(best)
 

@@ -39,31 +39,54 @@ def parse(arguments=None):
 
     """
     parser = argparse.ArgumentParser(
-        prog='report', epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter,
+        prog='report',
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
         description='What a URDF says about the dynamics of a robot, what is wrong with it, and\n'
-                    'what that does to the torques. Meshes are never opened.')
+        'what that does to the torques. Meshes are never opened.',
+    )
     parser.add_argument('robot', metavar='ROBOT.urdf', help='a URDF file; - reads standard input')
-    parser.add_argument('--json', action='store_true',
-                        help='print the report as JSON, and nothing else')
-    parser.add_argument('--html', metavar='FILE',
-                        help='write one self-contained page with tables and plots')
-    parser.add_argument('--strict', action='store_true',
-                        help='exit with 1 if there is a problem or a warning')
-    parser.add_argument('--gravity', nargs=3, type=_finite, metavar=('X', 'Y', 'Z'),
-                        default=(0.0, 0.0, -9.81),
-                        help='m/s^2 in the frame of the root link, points down '
-                             '(default: 0 0 -9.81)')
-    parser.add_argument('--payload-link', metavar='LINK',
-                        help='the link that would carry a payload (default: the end of the '
-                             'arm, before its fingers)')
-    parser.add_argument('--payload-point', nargs=3, type=_finite, metavar=('X', 'Y', 'Z'),
-                        default=(0.0, 0.0, 0.0),
-                        help='where its mass is in the frame of that link, m (default: 0 0 0)')
-    parser.add_argument('--samples', type=int, default=SAMPLES, metavar='N',
-                        help='positions to look at, before the worst are climbed to the top '
-                             f'(default: {SAMPLES})')
-    parser.add_argument('--seed', type=int, default=SEED, metavar='N',
-                        help=f'of these positions (default: {SEED})')
+    parser.add_argument(
+        '--json', action='store_true', help='print the report as JSON, and nothing else'
+    )
+    parser.add_argument(
+        '--html', metavar='FILE', help='write one self-contained page with tables and plots'
+    )
+    parser.add_argument(
+        '--strict', action='store_true', help='exit with 1 if there is a problem or a warning'
+    )
+    parser.add_argument(
+        '--gravity',
+        nargs=3,
+        type=_finite,
+        metavar=('X', 'Y', 'Z'),
+        default=(0.0, 0.0, -9.81),
+        help='m/s^2 in the frame of the root link, points down (default: 0 0 -9.81)',
+    )
+    parser.add_argument(
+        '--payload-link',
+        metavar='LINK',
+        help='the link that would carry a payload (default: the end of the '
+        'arm, before its fingers)',
+    )
+    parser.add_argument(
+        '--payload-point',
+        nargs=3,
+        type=_finite,
+        metavar=('X', 'Y', 'Z'),
+        default=(0.0, 0.0, 0.0),
+        help='where its mass is in the frame of that link, m (default: 0 0 0)',
+    )
+    parser.add_argument(
+        '--samples',
+        type=int,
+        default=SAMPLES,
+        metavar='N',
+        help=f'positions to look at, before the worst are climbed to the top (default: {SAMPLES})',
+    )
+    parser.add_argument(
+        '--seed', type=int, default=SEED, metavar='N', help=f'of these positions (default: {SEED})'
+    )
     return parser.parse_args(arguments)
 
 
@@ -72,5 +95,3 @@ def _finite(text):
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f'expected a finite number, got {text}')
     return value
-
-

@@ -31,17 +31,24 @@ def conditioning_entry(study):
         values = np.linalg.eigvalsh(np.nan_to_num(model.mass_matrix(study.positions[rows])))
         positive = values[:, 0] > 0.0
         numbers[rows] = np.where(
-            positive, values[:, -1] / np.where(positive, values[:, 0], 1.0), np.inf)
+            positive, values[:, -1] / np.where(positive, values[:, 0], 1.0), np.inf
+        )
         is_definite = is_definite and _has_answer(model, study.positions[rows])
     worst = study.positions[int(np.argmax(numbers))]
     vector = np.linalg.eigh(np.nan_to_num(model.mass_matrix(worst)))[1][:, 0]
-    slides = {int(model.tree.coordinate[body]) for body in np.flatnonzero(
-        (model.tree.kind == PRISMATIC) & model.tree.is_independent)}
+    slides = {
+        int(model.tree.coordinate[body])
+        for body in np.flatnonzero((model.tree.kind == PRISMATIC) & model.tree.is_independent)
+    }
     return ConditioningEntry(
-        median=float(np.median(numbers)), worst=float(np.max(numbers)),
+        median=float(np.median(numbers)),
+        worst=float(np.max(numbers)),
         position=tuple(worst.tolist()),
         weakest_joint=model.joint_names[int(np.argmax(np.abs(vector)))],
-        is_positive_definite=is_definite, has_mixed_units=0 < len(slides) < n, samples=count)
+        is_positive_definite=is_definite,
+        has_mixed_units=0 < len(slides) < n,
+        samples=count,
+    )
 
 
 def _has_answer(model, positions):

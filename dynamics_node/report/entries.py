@@ -24,8 +24,10 @@ def link_entries(examination):
 
     """
     carriers = _carriers(examination.description)
-    return tuple(_link(link, carriers.get(link.name), link.name in examination.unread)
-                 for link in examination.description.links)
+    return tuple(
+        _link(link, carriers.get(link.name), link.name in examination.unread)
+        for link in examination.description.links
+    )
 
 
 def body_entries(tree, description):
@@ -52,10 +54,18 @@ def body_entries(tree, description):
         mass, com = mass_and_com(tree.inertia[body])
         found = consistency_report(tree.inertia[body])
         parent = tree.parent[body]
-        entries.append(BodyEntry(
-            joint, child[joint], None if parent < 0 else tree.body_names[parent],
-            tuple(members[body]), mass, tuple(com.tolist()) if mass else None,
-            tuple(found.principal_moments.tolist()), found.is_physical))
+        entries.append(
+            BodyEntry(
+                joint,
+                child[joint],
+                None if parent < 0 else tree.body_names[parent],
+                tuple(members[body]),
+                mass,
+                tuple(com.tolist()) if mass else None,
+                tuple(found.principal_moments.tolist()),
+                found.is_physical,
+            )
+        )
     return tuple(entries)
 
 
@@ -83,8 +93,9 @@ def joint_entries(description):
 
 def _as_written(joint):
     mimic = joint.mimic
-    return (joint.name, 1.0, 0.0) if mimic is None else (
-        mimic.leader, mimic.multiplier, mimic.offset)
+    return (
+        (joint.name, 1.0, 0.0) if mimic is None else (mimic.leader, mimic.multiplier, mimic.offset)
+    )
 
 
 def _mimic_ends(joint, by_name):
@@ -101,13 +112,27 @@ def _mimic_ends(joint, by_name):
 def _link(link, carrier, is_unread):
     inertial = link.inertial
     if inertial is None:
-        return LinkEntry(link.name, is_unread, link.has_shape, math.nan if is_unread else 0.0,
-                         None, None, (), carrier)
+        return LinkEntry(
+            link.name,
+            is_unread,
+            link.has_shape,
+            math.nan if is_unread else 0.0,
+            None,
+            None,
+            (),
+            carrier,
+        )
     found = consistency_report(link_pseudo_inertia(inertial))
-    return LinkEntry(link.name, True, link.has_shape, inertial.mass,
-                     tuple(inertial.placement[:3, 3].tolist()) if inertial.mass else None,
-                     tuple(np.linalg.eigvalsh(inertial.tensor).tolist()),
-                     found.violations, carrier)
+    return LinkEntry(
+        link.name,
+        True,
+        link.has_shape,
+        inertial.mass,
+        tuple(inertial.placement[:3, 3].tolist()) if inertial.mass else None,
+        tuple(np.linalg.eigvalsh(inertial.tensor).tolist()),
+        found.violations,
+        carrier,
+    )
 
 
 def _carriers(description):
@@ -127,6 +152,17 @@ def _carriers(description):
 def _joint(joint, leader, multiplier, offset):
     mimics = leader if leader != joint.name else None
     return JointEntry(
-        joint.name, joint.parent, joint.child, joint.kind, mimics, float(multiplier),
-        float(offset), joint.lower, joint.upper, joint.velocity, joint.effort, joint.damping,
-        joint.friction)
+        joint.name,
+        joint.parent,
+        joint.child,
+        joint.kind,
+        mimics,
+        float(multiplier),
+        float(offset),
+        joint.lower,
+        joint.upper,
+        joint.velocity,
+        joint.effort,
+        joint.damping,
+        joint.friction,
+    )

@@ -43,14 +43,20 @@ def gravity_load(study, joint, link, point):
     curve = study.model.gravity_torque(along)[:, joint]
     curve[np.abs(curve) <= study.rounding] = 0.0
     return GravityLoad(
-        worst=torque, position=tuple(position.tolist()), share=abs(torque) / limit,
-        payload_left=_payload_left(torque, limit,
-                                   per_kilogram(study.model, position, link, point)[joint]),
-        sampled=float(magnitudes.max()), levels=_LEVELS,
+        worst=torque,
+        position=tuple(position.tolist()),
+        share=abs(torque) / limit,
+        payload_left=_payload_left(
+            torque, limit, per_kilogram(study.model, position, link, point)[joint]
+        ),
+        sampled=float(magnitudes.max()),
+        levels=_LEVELS,
         quantiles=tuple(np.quantile(magnitudes, _LEVELS).tolist()),
-        edges=tuple(edges.tolist()), counts=tuple(counts.tolist()),
+        edges=tuple(edges.tolist()),
+        counts=tuple(counts.tolist()),
         curve_positions=tuple(places.tolist()),
-        curve_torques=tuple(curve.tolist()))
+        curve_torques=tuple(curve.tolist()),
+    )
 
 
 def per_kilogram(model, q, link, point):

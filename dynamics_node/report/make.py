@@ -22,8 +22,16 @@ from ..urdf import examine_urdf
 _MOST_SAMPLES = 10_000_000
 
 
-def make_report(source, *, gravity=STANDARD_GRAVITY, samples=SAMPLES, seed=SEED, link=None,
-                point=(0.0, 0.0, 0.0), progress=None):
+def make_report(
+    source,
+    *,
+    gravity=STANDARD_GRAVITY,
+    samples=SAMPLES,
+    seed=SEED,
+    link=None,
+    point=(0.0, 0.0, 0.0),
+    progress=None,
+):
     """
     Look at a robot from all sides.
 
@@ -88,12 +96,22 @@ def _made(source, gravity, samples, seed, link, point, tell):
 def _what_is_written(source, examination, gravity, samples, seed):
     links = link_entries(examination)
     return Report(
-        robot=quoted(examination.description.name)[1:-1], source=_source_name(source),
-        root=examination.description.root, gravity=tuple(gravity.tolist()), verdict='usable',
-        refusals=(), total_mass=_sum_of_read(links),
-        moving_mass=_sum_of_read(link for link in links if link.carrier), samples=samples,
-        seed=seed, joint_names=(), links=links, bodies=(),
-        joints=joint_entries(examination.description), findings=())
+        robot=quoted(examination.description.name)[1:-1],
+        source=_source_name(source),
+        root=examination.description.root,
+        gravity=tuple(gravity.tolist()),
+        verdict='usable',
+        refusals=(),
+        total_mass=_sum_of_read(links),
+        moving_mass=_sum_of_read(link for link in links if link.carrier),
+        samples=samples,
+        seed=seed,
+        joint_names=(),
+        links=links,
+        bodies=(),
+        joints=joint_entries(examination.description),
+        findings=(),
+    )
 
 
 def _sum_of_read(links):
@@ -107,8 +125,12 @@ def _with_dynamics(report, study, link, point, tell):
     if link is None:
         link = model.tip_link
     check_link(model.tree.links, link)
-    report = replace(report, joint_names=model.joint_names, model=model,
-                     bodies=body_entries(model.tree, study.description))
+    report = replace(
+        report,
+        joint_names=model.joint_names,
+        model=model,
+        bodies=body_entries(model.tree, study.description),
+    )
     if not model.joint_names:
         return report
     index = {name: i for i, name in enumerate(model.joint_names)}
@@ -117,14 +139,16 @@ def _with_dynamics(report, study, link, point, tell):
         tell(0.05 + 0.5 * len(joints) / len(report.joints), f'gravity: {joint.name}')
         if joint.name in index:
             i = index[joint.name]
-            joint = replace(joint, range_note=study.range_notes[i],
-                            gravity=gravity_load(study, i, link, point))
+            joint = replace(
+                joint, range_note=study.range_notes[i], gravity=gravity_load(study, i, link, point)
+            )
         joints.append(joint)
     tell(0.6, 'payload')
     payload = replace(payload_entry(study, link, point), is_guessed=is_guessed)
     tell(0.8, 'mass matrix')
-    return replace(report, joints=tuple(joints), payload=payload,
-                   conditioning=conditioning_entry(study))
+    return replace(
+        report, joints=tuple(joints), payload=payload, conditioning=conditioning_entry(study)
+    )
 
 
 def _source_name(source):
@@ -141,8 +165,10 @@ def _checked_point(point):
     except (TypeError, ValueError):
         point = np.empty(0)
     if point.shape != (3,) or not np.isfinite(point).all():
-        raise ArgumentError('point: expected three finite numbers in the frame of the link, m, '
-                            f'got {point.tolist()}')
+        raise ArgumentError(
+            'point: expected three finite numbers in the frame of the link, m, '
+            f'got {point.tolist()}'
+        )
     return point
 
 

@@ -17,8 +17,12 @@ def progress_bar():
         As `make_report` wants it.
 
     """
-    with Progress(BarColumn(), TextColumn('{task.percentage:>3.0f} %'),
-                  TextColumn('{task.description}', markup=False),
-                  console=Console(stderr=True), transient=True) as progress:
+    with Progress(
+        BarColumn(),
+        TextColumn('{task.percentage:>3.0f} %'),
+        TextColumn('{task.description}', markup=False),
+        console=Console(stderr=True),
+        transient=True,
+    ) as progress:
         task = progress.add_task('', total=1.0)
         yield lambda fraction, what: progress.update(task, completed=fraction, description=what)

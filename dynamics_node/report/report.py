@@ -341,8 +341,10 @@ class Report:
     @property
     def counts(self):
         """How many findings there are of each severity, dict of str to int."""
-        return {severity: sum(finding.severity == severity for finding in self.findings)
-                for severity in SEVERITIES}
+        return {
+            severity: sum(finding.severity == severity for finding in self.findings)
+            for severity in SEVERITIES
+        }
 
     @property
     def is_clean(self):

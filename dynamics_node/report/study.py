@@ -106,8 +106,10 @@ class Study:
         pieces = np.array_split(np.arange(len(own)), min(parts, len(own)))
         low = np.unique([*order[:STARTS], *(piece[own[piece].argmin()] for piece in pieces)])
         high = np.unique([*order[-STARTS:], *(piece[own[piece].argmax()] for piece in pieces)])
-        return (self.positions[np.concatenate((low, high))],
-                np.repeat([-1.0, 1.0], [len(low), len(high)]))
+        return (
+            self.positions[np.concatenate((low, high))],
+            np.repeat([-1.0, 1.0], [len(low), len(high)]),
+        )
 
     @cached_property
     def worst(self):
@@ -138,7 +140,8 @@ class Study:
         """What is smaller than this is no torque but rounding, N m or N."""
         tree = self.model.tree
         lengths = np.linalg.norm(tree.placement[:, :3, 3], axis=1).sum() + np.abs(
-            tree.inertia[:, :3, 3]).sum() / max(self.model.total_mass, 1e-300)
+            tree.inertia[:, :3, 3]
+        ).sum() / max(self.model.total_mass, 1e-300)
         weight = self.model.total_mass * float(np.linalg.norm(self.model.gravity))
         return _ROUNDING * weight * max(lengths, 1.0)
 
@@ -157,8 +160,10 @@ class Study:
         starts, sign = self.starts(joint, torques, PARTS_AGAIN)
         before = self.worst[joint][0]
         return self.climber.with_model(model).climb(
-            joint, np.concatenate((starts, before[None], before[None])),
-            np.concatenate((sign, [1.0, -1.0])))
+            joint,
+            np.concatenate((starts, before[None], before[None])),
+            np.concatenate((sign, [1.0, -1.0])),
+        )
 
     def with_inertials(self, inertials):
         """
@@ -174,8 +179,10 @@ class Study:
         RobotModel
 
         """
-        links = tuple(replace(link, inertial=inertials[link.name]) if link.name in inertials
-                      else link for link in self.description.links)
+        links = tuple(
+            replace(link, inertial=inertials[link.name]) if link.name in inertials else link
+            for link in self.description.links
+        )
         tree = build_tree(replace(self.description, links=links))
         return one_off_model(tree, self.model.gravity)
 

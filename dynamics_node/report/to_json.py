@@ -28,8 +28,9 @@ def to_json(report):
 def _plain(value):
     if dataclasses.is_dataclass(value):
         names = [field.name for field in dataclasses.fields(value) if field.compare]
-        names += [name for name, member in vars(type(value)).items()
-                  if isinstance(member, property)]
+        names += [
+            name for name, member in vars(type(value)).items() if isinstance(member, property)
+        ]
         return {name: _plain(getattr(value, name)) for name in names}
     if isinstance(value, dict):
         return {key: _plain(part) for key, part in value.items()}

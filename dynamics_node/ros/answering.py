@@ -64,8 +64,10 @@ class Answering:
         """
         robot = self._get_robot()
         if robot is None:
-            raise NoRobotError('no robot description yet: publish robot_description, or set the '
-                               'parameter robot_description_file')
+            raise NoRobotError(
+                'no robot description yet: publish robot_description, or set the '
+                'parameter robot_description_file'
+            )
         return robot
 
     def failed(self, response, message):

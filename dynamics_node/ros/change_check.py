@@ -30,28 +30,36 @@ def check_change(robot, model, values, before, gravity_change, now):
     """
     unlimited = robot.unlimited_joints(values['effort_limits'])
     if unlimited:
-        raise ParameterError('effort_limits: expected a limit for every joint while output is on, '
-                             f'got none for {", ".join(unlimited)}')
+        raise ParameterError(
+            'effort_limits: expected a limit for every joint while output is on, '
+            f'got none for {", ".join(unlimited)}'
+        )
     above = robot.above_urdf(values)
     if above and not values['allow_limits_above_urdf'] and above != robot.above_urdf(before):
-        raise ParameterError('expected limits within those of the URDF while output is on, got '
-                             f'{above}: set allow_limits_above_urdf first')
+        raise ParameterError(
+            'expected limits within those of the URDF while output is on, got '
+            f'{above}: set allow_limits_above_urdf first'
+        )
     if values['gravity'] != before['gravity']:
         _check_gravity(values, gravity_change, now)
     if model is robot.model and values['effort_scale'] == before['effort_scale']:
         return  # lower limits are always possible
     over = robot.over_limits(values, model, before)
     if over:
-        raise ParameterError('while output is on, expected what the arm can hold, but its '
-                             f'gravity torque would be above the limit: {over}')
+        raise ParameterError(
+            'while output is on, expected what the arm can hold, but its '
+            f'gravity torque would be above the limit: {over}'
+        )
 
 
 def _check_gravity(values, gravity_change, now):
     gravity = values['gravity']
     if gravity[2] > 0.0 and not values['allow_upward_gravity']:
-        raise ParameterError(f'gravity: expected a vector that points to the earth, got '
-                             f'{list(gravity)}, which points up in the frame of the root link: '
-                             'if the arm hangs from a ceiling, set allow_upward_gravity')
+        raise ParameterError(
+            f'gravity: expected a vector that points to the earth, got '
+            f'{list(gravity)}, which points up in the frame of the root link: '
+            'if the arm hangs from a ceiling, set allow_upward_gravity'
+        )
     refusal = gravity_change.refusal(now, gravity)
     if refusal:
         raise ParameterError(f'gravity: {refusal}')

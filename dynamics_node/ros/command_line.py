@@ -35,10 +35,17 @@ def parser():
 
     """
     options = argparse.ArgumentParser(description='Robot dynamics as a ROS 2 node.')
-    options.add_argument('--executor', choices=EXECUTORS, default='rclpy',
-                        help="rclpy: rclpy's SingleThreadedExecutor; events: its EventsExecutor, "
-                        'experimental, refused where a self-test at start fails')
-    options.add_argument('--raw-states', action=argparse.BooleanOptionalAction, default=True,
-                        help='read joint_states from the bytes on the wire: less time from '
-                        'state to command')
+    options.add_argument(
+        '--executor',
+        choices=EXECUTORS,
+        default='rclpy',
+        help="rclpy: rclpy's SingleThreadedExecutor; events: its EventsExecutor, "
+        'experimental, refused where a self-test at start fails',
+    )
+    options.add_argument(
+        '--raw-states',
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help='read joint_states from the bytes on the wire: less time from state to command',
+    )
     return options

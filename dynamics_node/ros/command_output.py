@@ -61,15 +61,20 @@ class CommandOutput:
         self._saturated = Throttle(1.0)
         self._state_log = {state: Throttle(LOG_EVERY) for state in OutputState}
         self.publisher = node.create_publisher(
-            Float64MultiArray, parameters['command_topic'], COMMAND, event_callbacks=NO_EVENTS)
-        self._state_publisher = node.create_publisher(OutputStateMessage, '~/state', OUTPUT_STATE,
-                                                      event_callbacks=NO_EVENTS)
+            Float64MultiArray, parameters['command_topic'], COMMAND, event_callbacks=NO_EVENTS
+        )
+        self._state_publisher = node.create_publisher(
+            OutputStateMessage, '~/state', OUTPUT_STATE, event_callbacks=NO_EVENTS
+        )
         self.path = TorquePath(output_settings(parameters), self._changed)
         # On the steady clock: it must watch while simulation time stands still. The only timer of
         # the node, because each of them costs time in every wait of the executor.
-        self._watchdog = node.create_timer(IDLE_TICK, self._ticked,
-                                           clock=Clock(clock_type=ClockType.STEADY_TIME),
-                                           callback_group=TorqueGroup())
+        self._watchdog = node.create_timer(
+            IDLE_TICK,
+            self._ticked,
+            clock=Clock(clock_type=ClockType.STEADY_TIME),
+            callback_group=TorqueGroup(),
+        )
 
     @property
     def topic(self):
@@ -96,8 +101,7 @@ class CommandOutput:
         self.path.published(time.monotonic())
         self.commands += 1
         if self.path.output.limiter.is_saturated and self._saturated.is_due():
-            self.logger.warning(
-                f'effort above its limit: {self.path.output.limiter.saturation()}')
+            self.logger.warning(f'effort above its limit: {self.path.output.limiter.saturation()}')
 
     def announce(self):
         """Publish the state that the output starts in: READY means that there is a model."""
@@ -176,5 +180,9 @@ class CommandOutput:
 
 def output_settings(parameters):
     """Return the `OutputSettings` that the parameters say."""
-    return OutputSettings(**{name: parameters[name] for name in (
-        'state_timeout', 'start_ramp', 'stop_ramp', 'stop_behavior')})
+    return OutputSettings(
+        **{
+            name: parameters[name]
+            for name in ('state_timeout', 'start_ramp', 'stop_ramp', 'stop_behavior')
+        }
+    )

@@ -73,8 +73,11 @@ class Controllers:
         """
         found = self._found()
         before = {name: item.endpoints for name, item in self.listeners.items()}
-        gone = [name for name, item in self.listeners.items()
-                if item.endpoints.isdisjoint(found.get(name, ()))]
+        gone = [
+            name
+            for name, item in self.listeners.items()
+            if item.endpoints.isdisjoint(found.get(name, ()))
+        ]
         closed = [self.listeners.pop(name) for name in gone]
         for listener in closed:
             listener.close()
@@ -83,10 +86,12 @@ class Controllers:
             listener.endpoints = endpoints
             self.listeners[name] = listener
             listener.update()
-        self._new = [name for name, endpoints in found.items()
-                     if endpoints - before.get(name, set())]
-        self.renewed = [name for name in self._new
-                        if name in before and self.listeners[name].is_controller]
+        self._new = [
+            name for name, endpoints in found.items() if endpoints - before.get(name, set())
+        ]
+        self.renewed = [
+            name for name in self._new if name in before and self.listeners[name].is_controller
+        ]
         for name in self.renewed:
             self._ask_anew(name)
         return sorted(item.name for item in closed if item.is_controller)
@@ -121,14 +126,20 @@ class Controllers:
         list of str
 
         """
-        return [reason for item in self.listeners.values()
-                for reason in item.mismatches(list(joint_names)) + item.inactive()]
+        return [
+            reason
+            for item in self.listeners.values()
+            for reason in item.mismatches(list(joint_names)) + item.inactive()
+        ]
 
     def notes(self):
         """Return what could not be found out, a list of str."""
-        notes = [f'{item.name}, which listens there, did not say within {ANSWER_WITHIN:g} s which '
-                 'joints it drives; it is asked on, and stops the output if it does not fit'
-                 for item in self.listeners.values() if not item.has_answered]
+        notes = [
+            f'{item.name}, which listens there, did not say within {ANSWER_WITHIN:g} s which '
+            'joints it drives; it is asked on, and stops the output if it does not fit'
+            for item in self.listeners.values()
+            if not item.has_answered
+        ]
         if self.has_unnamed:
             notes.append('a listener there has not been identified yet')
         return notes
@@ -139,8 +150,11 @@ class Controllers:
 
     def takes_commands(self):
         """Return whether a controller that is not inactive has got the last commands."""
-        return any(item.is_controller and not item.inactive()
-                   for name, item in self.listeners.items() if name not in self._new)
+        return any(
+            item.is_controller and not item.inactive()
+            for name, item in self.listeners.items()
+            if name not in self._new
+        )
 
     def _found(self):
         # Name → endpoints of each listener.
@@ -187,8 +201,12 @@ class Listener:
             self._release()  # every client costs time in every wait of the executor
         if self._events is None and self._node.count_publishers(f'{self.name}/transition_event'):
             self._events = self._node.create_subscription(
-                TransitionEvent, f'{self.name}/transition_event', self._changed, EVENTS,
-                event_callbacks=NO_SUBSCRIPTION_EVENTS)
+                TransitionEvent,
+                f'{self.name}/transition_event',
+                self._changed,
+                EVENTS,
+                event_callbacks=NO_SUBSCRIPTION_EVENTS,
+            )
 
     def ask_again(self):
         """Forget the answers, but not the lifecycle that was seen to change."""
@@ -199,8 +217,7 @@ class Listener:
     def has_answered(self):
         """Whether its parameters are known, and its lifecycle if it tells that."""
         answers = [*self._answers.values(), self._state_answer, self._list_answer]
-        return bool(self._answers) and all(
-            answer is None or answer.done() for answer in answers)
+        return bool(self._answers) and all(answer is None or answer.done() for answer in answers)
 
     @property
     def is_controller(self):
@@ -216,14 +233,20 @@ class Listener:
             if theirs != joint_names:
                 has_same = sorted(theirs) == sorted(joint_names)
                 what = 'order of the joints' if has_same else 'number or names of the joints'
-                reasons.append(f'{self.name} has another {what}: its parameter joints is '
-                               f'[{", ".join(theirs)}], here it is [{", ".join(joint_names)}]; '
-                               'make them equal')
+                reasons.append(
+                    f'{self.name} has another {what}: its parameter joints is '
+                    f'[{", ".join(theirs)}], here it is [{", ".join(joint_names)}]; '
+                    'make them equal'
+                )
         interface = self._value('interface_name')
-        if (interface.type == ParameterType.PARAMETER_STRING
-                and interface.string_value not in ('', 'effort')):
-            reasons.append(f'{self.name} drives {interface.string_value}, expected effort: '
-                           'command_topic must be that of an effort controller')
+        if interface.type == ParameterType.PARAMETER_STRING and interface.string_value not in (
+            '',
+            'effort',
+        ):
+            reasons.append(
+                f'{self.name} drives {interface.string_value}, expected effort: '
+                'command_topic must be that of an effort controller'
+            )
         return reasons
 
     def inactive(self):
@@ -233,8 +256,10 @@ class Listener:
             return []
         namespace, _, controller = self.name.rpartition('/')
         manager = f' -c {namespace}/controller_manager' if namespace else ''
-        return [f'{self.name} is {state}: the efforts would not reach the arm; activate it first, '
-                f'with  ros2 control set_controller_state{manager} {controller} active']
+        return [
+            f'{self.name} is {state}: the efforts would not reach the arm; activate it first, '
+            f'with  ros2 control set_controller_state{manager} {controller} active'
+        ]
 
     def close(self):
         """Ask no more."""
@@ -249,22 +274,28 @@ class Listener:
         self._clients = {}
 
     def _ask_parameters(self):
-        client = None if self._answers else self._ready(
-            GetParameters, f'{self.name}/get_parameters')
+        client = (
+            None if self._answers else self._ready(GetParameters, f'{self.name}/get_parameters')
+        )
         if client is not None:
             # One at a time: rclcpp answers nothing at all if one of several does not exist.
-            self._answers = {name: client.call_async(GetParameters.Request(names=[name]))
-                             for name in PARAMETERS}
+            self._answers = {
+                name: client.call_async(GetParameters.Request(names=[name])) for name in PARAMETERS
+            }
 
     def _ask_state(self):
         # The lifecycle as the node offers it, or as the controller manager knows it: the
         # controllers of ros2_control have no get_state of their own.
         if self._state_answer is None and (
-                client := self._ready(GetState, f'{self.name}/get_state')):
+            client := self._ready(GetState, f'{self.name}/get_state')
+        ):
             self._state_answer = client.call_async(GetState.Request())
         manager = f'{self.name.rpartition("/")[0]}/controller_manager/list_controllers'
-        if ListControllers is not None and self._list_answer is None and (
-                client := self._ready(ListControllers, manager)):
+        if (
+            ListControllers is not None
+            and self._list_answer is None
+            and (client := self._ready(ListControllers, manager))
+        ):
             self._list_answer = client.call_async(ListControllers.Request())
 
     def _ready(self, kind, service):
@@ -284,8 +315,14 @@ class Listener:
             return self._state_answer.result().current_state.label
         if self._list_answer is not None and self._list_answer.done():
             name = self.name.rpartition('/')[2]
-            return next((item.state for item in self._list_answer.result().controller
-                         if item.name == name), None)
+            return next(
+                (
+                    item.state
+                    for item in self._list_answer.result().controller
+                    if item.name == name
+                ),
+                None,
+            )
         return None
 
     def _changed(self, event):
@@ -298,8 +335,10 @@ class Listener:
 
 
 _WORDS = {
-    State.PRIMARY_STATE_UNCONFIGURED: 'unconfigured', State.PRIMARY_STATE_INACTIVE: 'inactive',
-    State.PRIMARY_STATE_ACTIVE: 'active', State.PRIMARY_STATE_FINALIZED: 'finalized',
+    State.PRIMARY_STATE_UNCONFIGURED: 'unconfigured',
+    State.PRIMARY_STATE_INACTIVE: 'inactive',
+    State.PRIMARY_STATE_ACTIVE: 'active',
+    State.PRIMARY_STATE_FINALIZED: 'finalized',
     State.TRANSITION_STATE_CONFIGURING: 'configuring',
     State.TRANSITION_STATE_CLEANINGUP: 'being cleaned up',
     State.TRANSITION_STATE_SHUTTINGDOWN: 'shutting down',

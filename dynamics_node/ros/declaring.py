@@ -6,8 +6,10 @@ from rclpy.parameter import Parameter as RosParameter
 from .parameter import DOUBLE, DOUBLES, FLAG, TEXT, TEXTS
 
 _TYPES = {
-    DOUBLE: RosParameter.Type.DOUBLE, DOUBLES: RosParameter.Type.DOUBLE_ARRAY,
-    TEXT: RosParameter.Type.STRING, TEXTS: RosParameter.Type.STRING_ARRAY,
+    DOUBLE: RosParameter.Type.DOUBLE,
+    DOUBLES: RosParameter.Type.DOUBLE_ARRAY,
+    TEXT: RosParameter.Type.STRING,
+    TEXTS: RosParameter.Type.STRING_ARRAY,
     FLAG: RosParameter.Type.BOOL,
 }
 
@@ -63,6 +65,9 @@ def ros_parameter(parameter, value):
 def _descriptor(parameter, read_only=False):
     # Dynamic typing, because rcl refuses [87, 12] for a double array by an exception; the
     # table's own check takes integers and says what is wrong with the rest.
-    return ParameterDescriptor(description=parameter.description, read_only=read_only,
-                               additional_constraints=parameter.constraints(),
-                               dynamic_typing=True)
+    return ParameterDescriptor(
+        description=parameter.description,
+        read_only=read_only,
+        additional_constraints=parameter.constraints(),
+        dynamic_typing=True,
+    )

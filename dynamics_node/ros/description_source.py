@@ -39,16 +39,19 @@ class DescriptionSource:
         parameters, on_description = self._parameters, self._on_description
         if parameters['robot_description']:
             # Bytes are always text, so that a text is never taken for a path.
-            on_description(parameters['robot_description'].encode(),
-                           'parameter robot_description')
+            on_description(parameters['robot_description'].encode(), 'parameter robot_description')
         elif parameters['robot_description_file']:
             path = parameters['robot_description_file']
             on_description(path, f'parameter robot_description_file ({path})')
         else:
             self.subscription = self._node.create_subscription(
-                String, 'robot_description', self._received, ROBOT_DESCRIPTION,
+                String,
+                'robot_description',
+                self._received,
+                ROBOT_DESCRIPTION,
                 event_callbacks=NO_SUBSCRIPTION_EVENTS,
-                callback_group=getattr(self._node, 'service_group', None))
+                callback_group=getattr(self._node, 'service_group', None),
+            )
             self.topic = self.subscription.topic_name
 
     @logged

@@ -32,8 +32,9 @@ class Diagnostics:
         self._states = states
         self._output = output
         self._external_torque = external_torque
-        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', RESULT,
-                                                event_callbacks=NO_EVENTS)
+        self._publisher = node.create_publisher(
+            DiagnosticArray, '/diagnostics', RESULT, event_callbacks=NO_EVENTS
+        )
         self._state_rate = Rate()
         self._command_rate = Rate()
 
@@ -45,9 +46,15 @@ class Diagnostics:
 
     def publish(self):
         """Publish the present health."""
-        message = DiagnosticArray(status=[
-            self._model(), self._joint_states(), self._command(), self._state_machine(),
-            self._external()])
+        message = DiagnosticArray(
+            status=[
+                self._model(),
+                self._joint_states(),
+                self._command(),
+                self._state_machine(),
+                self._external(),
+            ]
+        )
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 
@@ -58,18 +65,23 @@ class Diagnostics:
         warnings = robot.model.warnings
         level = DiagnosticStatus.WARN if warnings else DiagnosticStatus.OK
         text = f'{len(warnings)} warning(s)' if warnings else 'ok'
-        return self._status('model', level, text, {
-            'joints': ', '.join(robot.joint_names),
-            'moving mass [kg]': f'{robot.model.total_mass:.6g}',
-            'gravity [m/s^2]': ', '.join(f'{g:g}' for g in robot.model.gravity),
-            'payload': _payload_in_words(robot.model.payload),
-            **{f'warning {i + 1}': text for i, text in enumerate(warnings)}})
+        return self._status(
+            'model',
+            level,
+            text,
+            {
+                'joints': ', '.join(robot.joint_names),
+                'moving mass [kg]': f'{robot.model.total_mass:.6g}',
+                'gravity [m/s^2]': ', '.join(f'{g:g}' for g in robot.model.gravity),
+                'payload': _payload_in_words(robot.model.payload),
+                **{f'warning {i + 1}': text for i, text in enumerate(warnings)},
+            },
+        )
 
     def _joint_states(self):
         robot = self._get_robot()
         if robot is None:
-            return self._status('joint states', DiagnosticStatus.WARN, 'no robot description',
-                                {})
+            return self._status('joint states', DiagnosticStatus.WARN, 'no robot description', {})
         now, timeout = time.monotonic(), self._parameters['state_timeout']
         buffer, publishers = robot.buffer, self._states.publishers
         level, text = DiagnosticStatus.OK, 'ok'
@@ -82,15 +94,23 @@ class Diagnostics:
         elif silent := robot.stale_others(robot.selection.index, now, timeout):
             level, text = DiagnosticStatus.WARN, f'taken where last seen: {", ".join(silent)}'
         age = buffer.age(now)
-        return self._status('joint states', level, text, {
-            'rate [Hz]': f'{self._state_rate.value:.1f}',
-            'age [s]': 'never received' if math.isinf(age) else f'{age:.3f}',
-            'publishers': str(publishers),
-            'accepted': str(buffer.accepted),
-            'skipped': str(self._states.skipped),
-            'rejected': str(buffer.rejected.total()),
-            **{f'rejected: {kind}': str(count)
-               for kind, count in sorted(buffer.rejected.items())}})
+        return self._status(
+            'joint states',
+            level,
+            text,
+            {
+                'rate [Hz]': f'{self._state_rate.value:.1f}',
+                'age [s]': 'never received' if math.isinf(age) else f'{age:.3f}',
+                'publishers': str(publishers),
+                'accepted': str(buffer.accepted),
+                'skipped': str(self._states.skipped),
+                'rejected': str(buffer.rejected.total()),
+                **{
+                    f'rejected: {kind}': str(count)
+                    for kind, count in sorted(buffer.rejected.items())
+                },
+            },
+        )
 
     def _command(self):
         machine, limiter = self._output.path.output.machine, self._output.path.output.limiter
@@ -99,21 +119,35 @@ class Diagnostics:
             level, text = DiagnosticStatus.WARN, f'above the limit: {limiter.saturation()}'
         robot = self._get_robot()
         names = robot.joint_names if robot else ()
-        return self._status('output', level, text, {
-            'topic': self._output.topic,
-            'command rate [Hz]': f'{self._command_rate.value:.1f}',
-            'commands': str(self._output.commands),
-            'rate limited commands': str(limiter.rate_limited),
-            **{f'limit hit: {name}': str(count) for name, count in zip(
-                names, limiter.saturations, strict=False)}})
+        return self._status(
+            'output',
+            level,
+            text,
+            {
+                'topic': self._output.topic,
+                'command rate [Hz]': f'{self._command_rate.value:.1f}',
+                'commands': str(self._output.commands),
+                'rate limited commands': str(limiter.rate_limited),
+                **{
+                    f'limit hit: {name}': str(count)
+                    for name, count in zip(names, limiter.saturations, strict=False)
+                },
+            },
+        )
 
     def _state_machine(self):
         machine = self._output.path.output.machine
-        level = {'FAULT': DiagnosticStatus.ERROR, 'STOPPING': DiagnosticStatus.WARN,
-                 'HOLDING': DiagnosticStatus.WARN}.get(
-            machine.name, DiagnosticStatus.OK)
-        return self._status('state machine', level, f'{machine.name}: {machine.reason}', {
-            'state': machine.name, 'reason': machine.reason, 'latched fault': machine.fault})
+        level = {
+            'FAULT': DiagnosticStatus.ERROR,
+            'STOPPING': DiagnosticStatus.WARN,
+            'HOLDING': DiagnosticStatus.WARN,
+        }.get(machine.name, DiagnosticStatus.OK)
+        return self._status(
+            'state machine',
+            level,
+            f'{machine.name}: {machine.reason}',
+            {'state': machine.name, 'reason': machine.reason, 'latched fault': machine.fault},
+        )
 
     def _external(self):
         if not self._external_torque.is_on:
@@ -124,9 +158,12 @@ class Diagnostics:
 
     def _status(self, part, level, message, values):
         return DiagnosticStatus(
-            name=f'{self._node.get_name()}: {part}', level=level, message=message,
+            name=f'{self._node.get_name()}: {part}',
+            level=level,
+            message=message,
             hardware_id=self._node.get_fully_qualified_name(),
-            values=[KeyValue(key=key, value=value) for key, value in values.items()])
+            values=[KeyValue(key=key, value=value) for key, value in values.items()],
+        )
 
 
 def _payload_in_words(payload):

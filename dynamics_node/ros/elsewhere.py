@@ -26,8 +26,13 @@ def published_elsewhere(node, subscription, endings=('',)):
         /left/joint_states. Sorted, at most three.
 
     """
-    return _like(node, subscription.topic_name, type_name(subscription.msg_type), endings,
-                 node.count_publishers)
+    return _like(
+        node,
+        subscription.topic_name,
+        type_name(subscription.msg_type),
+        endings,
+        node.count_publishers,
+    )
 
 
 def listened_elsewhere(node, publisher):
@@ -45,14 +50,17 @@ def listened_elsewhere(node, publisher):
         As of `published_elsewhere`; none whose name says that it is of other numbers.
 
     """
-    found = _like(node, publisher.topic_name, type_name(publisher.msg_type), ('',),
-                  node.count_subscribers)
+    found = _like(
+        node, publisher.topic_name, type_name(publisher.msg_type), ('',), node.count_subscribers
+    )
     return [topic for topic in found if not any(word in topic for word in _NO_EFFORT)]
 
 
 def _like(node, own, kind, endings, count):
     last = own.rpartition('/')[2]
     names = {last + ending for ending in endings}
-    return sorted(topic for topic, kinds in node.get_topic_names_and_types()
-                  if topic != own and kind in kinds and topic.rpartition('/')[2] in names
-                  and count(topic))[:MOST]
+    return sorted(
+        topic
+        for topic, kinds in node.get_topic_names_and_types()
+        if topic != own and kind in kinds and topic.rpartition('/')[2] in names and count(topic)
+    )[:MOST]

@@ -59,8 +59,9 @@ class Enabling:
         self._canceled = 0
         # The answer waits for the controllers while joint states go on: not in their group. Nor
         # in that of the other services, which may wait: this one also stops the arm.
-        node.create_service(SetBool, '~/enable', self._requested,
-                            callback_group=ReentrantCallbackGroup())
+        node.create_service(
+            SetBool, '~/enable', self._requested, callback_group=ReentrantCallbackGroup()
+        )
 
     async def enable(self):
         """
@@ -88,8 +89,9 @@ class Enabling:
         robot = self._get_robot()
         reasons = self.refusals()
         if robot is not asked:
-            reasons.append('the robot description has changed while the controllers were asked: '
-                           'ask again')
+            reasons.append(
+                'the robot description has changed while the controllers were asked: ask again'
+            )
         elif robot is not None:
             reasons += self._controllers.refusals(robot.joint_names)
         if reasons:
@@ -100,12 +102,16 @@ class Enabling:
         """Switch the output off, or release what it holds; returned values as for `enable`."""
         self._canceled += 1
         state = self._path.state
-        lost = [reason for item in self._controllers.listeners.values()
-                for reason in item.inactive()]
+        lost = [
+            reason for item in self._controllers.listeners.values() for reason in item.inactive()
+        ]
         if not self._path.is_on and self._path.output.has_effort_in_force and lost:
-            return False, ('the last efforts may be in force at the hardware ('
-                           + self._path.output.limiter.describe_last() + '), and '
-                           + '; '.join(lost))
+            return False, (
+                'the last efforts may be in force at the hardware ('
+                + self._path.output.limiter.describe_last()
+                + '), and '
+                + '; '.join(lost)
+            )
         if not self._path.disable(time.monotonic(), 'disabled on request'):
             if state == OutputState.STOPPING:
                 return True, 'stopping already'
@@ -120,24 +126,39 @@ class Enabling:
         robot, values = self._get_robot(), self._parameters.values
         if robot is None:
             return ['no robot description yet']
-        return (self._about_states(robot, values) + self._about_limits(robot, values)
-                + self._about_robot(robot, values) + self._monitor.conflicts()
-                + self._monitor.description_conflicts())
+        return (
+            self._about_states(robot, values)
+            + self._about_limits(robot, values)
+            + self._about_robot(robot, values)
+            + self._monitor.conflicts()
+            + self._monitor.description_conflicts()
+        )
 
     def _about_states(self, robot, values):
         timeout = values['state_timeout']
         stale = robot.buffer.stale_joints(time.monotonic(), timeout)
         if stale:
-            dropped = ', '.join(f'{count} for {kind}' for kind, count in
-                                robot.buffer.rejected.most_common())
-            return [f'no joint state within {timeout:g} s for {", ".join(stale)}'
-                    + (f' (dropped so far: {dropped})' if dropped else '')]
+            dropped = ', '.join(
+                f'{count} for {kind}' for kind, count in robot.buffer.rejected.most_common()
+            )
+            return [
+                f'no joint state within {timeout:g} s for {", ".join(stale)}'
+                + (f' (dropped so far: {dropped})' if dropped else '')
+            ]
         if not robot.is_mass_matrix_positive_definite():
-            return ['the mass matrix is not positive definite: check the <inertial> of the '
-                    'moving links']
+            return [
+                'the mass matrix is not positive definite: check the <inertial> of the '
+                'moving links'
+            ]
         over = robot.over_limits(values) if values['compensate.gravity'] else ''
-        reasons = [f'the arm cannot hold itself where it is, gravity torque is above the effort '
-                   f'limit: {over}; move it, or raise effort_limits'] if over else []
+        reasons = (
+            [
+                f'the arm cannot hold itself where it is, gravity torque is above the effort '
+                f'limit: {over}; move it, or raise effort_limits'
+            ]
+            if over
+            else []
+        )
         if fast := robot.buffer.runaway():
             reasons.append(f'the arm moves faster than velocity_limits: {fast}')
         return reasons
@@ -146,8 +167,9 @@ class Enabling:
         reasons = []
         unlimited = robot.unlimited_joints(values['effort_limits'])
         if unlimited:
-            reasons.append(f'no effort limit for {", ".join(unlimited)}: set the parameter '
-                           'effort_limits')
+            reasons.append(
+                f'no effort limit for {", ".join(unlimited)}: set the parameter effort_limits'
+            )
         above = robot.above_urdf(values)
         if above and not values['allow_limits_above_urdf']:
             reasons.append(f'{above}: lower it, or set allow_limits_above_urdf')
@@ -161,11 +183,14 @@ class Enabling:
                 f'the URDF names the hardware plugin {", ".join(plugins)}, which compensates '
                 'gravity itself: a second gravity torque would push the arm up; use '
                 '~/gravity_torque and the services there, or set allow_self_compensating_arm if '
-                'this arm floats only with an effort')
+                'this arm floats only with an effort'
+            )
         if values['gravity'][2] > 0.0 and not values['allow_upward_gravity']:
-            reasons.append(f'gravity {list(values["gravity"])} points up in the frame of '
-                           f'{robot.model.tree.root}: turn it (it must point to the earth), or '
-                           'set allow_upward_gravity if the arm hangs from a ceiling')
+            reasons.append(
+                f'gravity {list(values["gravity"])} points up in the frame of '
+                f'{robot.model.tree.root}: turn it (it must point to the earth), or '
+                'set allow_upward_gravity if the arm hangs from a ceiling'
+            )
         return reasons
 
     async def _requested(self, request, response):
@@ -192,8 +217,9 @@ class Enabling:
         if self._answers is None:
             self._controllers.ask_again()
             self._answers = answers = Future()
-            timer = self._node.create_timer(STEP, self._look,
-                                            clock=Clock(clock_type=ClockType.STEADY_TIME))
+            timer = self._node.create_timer(
+                STEP, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME)
+            )
             self._until = time.monotonic() + ANSWER_WITHIN
             self._look()
             try:
@@ -227,23 +253,38 @@ class Enabling:
         if notes:
             self.logger.warning('; '.join(notes))
         ramp = self._parameters['start_ramp']
-        return (f'enabled: full effort in {ramp:g} s (start_ramp), on {topic}; release brakes '
-                'when ~/state is ACTIVE, not before' + ''.join(f'; but {note}' for note in notes))
+        return (
+            f'enabled: full effort in {ramp:g} s (start_ramp), on {topic}; release brakes '
+            'when ~/state is ACTIVE, not before' + ''.join(f'; but {note}' for note in notes)
+        )
 
     def _notes(self, robot):
         values, notes = self._parameters.values, []
         names = robot.joints_without_velocity_limit(values['velocity_limits'])
         if names:
-            notes.append(f'jumps and runaway are not noticed of {", ".join(names)}: the URDF has '
-                         'no velocity limit there; set velocity_limits')
+            notes.append(
+                f'jumps and runaway are not noticed of {", ".join(names)}: the URDF has '
+                'no velocity limit there; set velocity_limits'
+            )
         if names := robot.buffer.joints_without_velocity():
-            notes.append(f'joint_states have no velocity of {", ".join(names)}: a runaway is '
-                         'noticed only by jumps of the position')
-        notes += [text.lstrip('; ') for text in (robot.unseen_others(
-            robot.selection.index, time.monotonic(), values['state_timeout']),) if text]
+            notes.append(
+                f'joint_states have no velocity of {", ".join(names)}: a runaway is '
+                'noticed only by jumps of the position'
+            )
+        notes += [
+            text.lstrip('; ')
+            for text in (
+                robot.unseen_others(
+                    robot.selection.index, time.monotonic(), values['state_timeout']
+                ),
+            )
+            if text
+        ]
         if robot.refused_since:
-            notes.append(f'a newer robot description was refused ({robot.refused_since}): the '
-                         'model before is used')
+            notes.append(
+                f'a newer robot description was refused ({robot.refused_since}): the '
+                'model before is used'
+            )
         return notes + self._in_force(robot, values)
 
     def _in_force(self, robot, values):
@@ -252,11 +293,20 @@ class Enabling:
         if self._path.output.limiter.last.any():
             return []  # this node's own, from which the ramp begins
         effort, limits = robot.buffer.needed_effort, robot.effort_limits(values['effort_limits'])
-        applied = [f'{name}: {value:.4g}' for name, value, limit in zip(
-            robot.joint_names, effort, limits, strict=True) if np.abs(value) > IN_FORCE * limit]
-        return [f'joint_states report efforts that this node has not sent ({", ".join(applied)}): '
+        applied = [
+            f'{name}: {value:.4g}'
+            for name, value, limit in zip(robot.joint_names, effort, limits, strict=True)
+            if np.abs(value) > IN_FORCE * limit
+        ]
+        return (
+            [
+                f'joint_states report efforts that this node has not sent ({", ".join(applied)}): '
                 'if a controller still holds them, they drop to zero with the first command, so '
-                'keep the brakes on until ~/state is ACTIVE'] if applied else []
+                'keep the brakes on until ~/state is ACTIVE'
+            ]
+            if applied
+            else []
+        )
 
 
 def _refused(reasons):

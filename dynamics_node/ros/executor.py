@@ -45,12 +45,14 @@ def make_executor(choice):
     try:
         from rclpy.experimental import EventsExecutor
     except ImportError as error:
-        raise UnsoundExecutorError(f'--executor events: this rclpy has none ({error}); use '
-                                   '--executor rclpy') from error
+        raise UnsoundExecutorError(
+            f'--executor events: this rclpy has none ({error}); use --executor rclpy'
+        ) from error
     problem = _self_test(EventsExecutor)
     if problem:
-        raise UnsoundExecutorError(f'--executor events: its self-test failed ({problem}); use '
-                                   '--executor rclpy')
+        raise UnsoundExecutorError(
+            f'--executor events: its self-test failed ({problem}); use --executor rclpy'
+        )
     return EventsExecutor()
 
 
@@ -86,14 +88,18 @@ class _Probe(Node):
     """Uses what the node uses, under a name of its own."""
 
     def __init__(self):
-        super().__init__('_dynamics_node_executor_test', use_global_arguments=False,
-                         start_parameter_services=False)
+        super().__init__(
+            '_dynamics_node_executor_test',
+            use_global_arguments=False,
+            start_parameter_services=False,
+        )
         self._done = {'timer': False, 'message': False, 'late answer': False}
         self._timer = self.create_timer(0.01, self._ticked)
         self._publisher = self.create_publisher(Empty, '~/probe', 1)
         self.create_subscription(Empty, '~/probe', self._heard, 1)
-        self.create_service(Trigger, '~/late', self._answer,
-                            callback_group=ReentrantCallbackGroup())
+        self.create_service(
+            Trigger, '~/late', self._answer, callback_group=ReentrantCallbackGroup()
+        )
         self._client = self.create_client(Trigger, '~/late')
         self._call = None
         self._late = Future()

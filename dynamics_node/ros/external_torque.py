@@ -21,7 +21,7 @@ MAX_BEGINS = 3
 _TO_DO = {
     'velocity': 'give the joints a velocity state interface in the <ros2_control> of the URDF',
     'effort': 'give the joints an effort state interface in the <ros2_control> of the URDF, if '
-              'the arm measures torque',
+    'the arm measures torque',
 }
 
 
@@ -49,8 +49,9 @@ class ExternalTorque:
         """
         self.logger = node.get_logger()
         self._parameters = parameters
-        self._publisher = node.create_publisher(JointState, '~/external_torque', RESULT,
-                                                event_callbacks=NO_EVENTS)
+        self._publisher = node.create_publisher(
+            JointState, '~/external_torque', RESULT, event_callbacks=NO_EVENTS
+        )
         self._warnings = {what: Throttle(WARN_EVERY) for what in (*_TO_DO, 'rate', 'doubt')}
         self._watch: _Watch | None = None
         self._missing = ''
@@ -122,18 +123,25 @@ class ExternalTorque:
         """
         doubt = self._watch.at_rest.doubt if self._watch else ''
         return self._missing or doubt, {
-            'published': str(self.published), 'begun': str(self._begun), 'missing': self._missing,
-            'effort at rest': doubt or 'nothing wrong'}
+            'published': str(self.published),
+            'begun': str(self._begun),
+            'missing': self._missing,
+            'effort at rest': doubt or 'nothing wrong',
+        }
 
     def _is_unknown(self, robot, **measured):
         for what, values in measured.items():
-            names = [name for name, value in zip(robot.joint_names, values.tolist(), strict=True)
-                     if not math.isfinite(value)]
+            names = [
+                name
+                for name, value in zip(robot.joint_names, values.tolist(), strict=True)
+                if not math.isfinite(value)
+            ]
             if names:
                 self._missing = f'no {what} in joint_states of {", ".join(names)}'
                 if self._warnings[what].is_due():
-                    self.logger.warning(f'{self._missing}: ~/external_torque is not published; '
-                                        f'{_TO_DO[what]}')
+                    self.logger.warning(
+                        f'{self._missing}: ~/external_torque is not published; {_TO_DO[what]}'
+                    )
                 return True
         self._missing = ''
         return False
@@ -143,8 +151,10 @@ class ExternalTorque:
         if watch.begins >= MAX_BEGINS:
             self._missing = f'joint states come more than {LONGEST_STEP:g} s apart'
             if self._warnings['rate'].is_due():
-                self.logger.warning(f'{self._missing}: ~/external_torque is not published; raise '
-                                    'the rate of the joint state broadcaster')
+                self.logger.warning(
+                    f'{self._missing}: ~/external_torque is not published; raise '
+                    'the rate of the joint state broadcaster'
+                )
 
     def _warn_of(self, doubt):
         if doubt and self._warnings['doubt'].is_due():
@@ -153,11 +163,16 @@ class ExternalTorque:
                 'motor current, zeros, or torque without gravity (docs/arms.md); then '
                 '~/external_torque is wrong: have the driver report joint torque, or set '
                 'publish_external_torque to false. All is well if a brake or something else '
-                'carries the arm')
+                'carries the arm'
+            )
 
     def _publish(self, robot, time, position, velocity, estimate):
-        message = JointState(name=list(robot.joint_names), position=to_field(position),
-                             velocity=to_field(velocity), effort=to_field(estimate))
+        message = JointState(
+            name=list(robot.joint_names),
+            position=to_field(position),
+            velocity=to_field(velocity),
+            effort=to_field(estimate),
+        )
         message.header.stamp = Time(sec=time // _SECOND, nanosec=time % _SECOND)
         self._publisher.publish(message)
         self.published += 1
@@ -185,8 +200,9 @@ class _Watch:
         self._robot, self._what = robot, (robot.buffer.breaks, gain)
         self._model = robot.model
         self.observer = MomentumObserver(robot.model, gain, robot.joint_names)
-        self.at_rest = EffortAtRest(robot.joint_names,
-                                    robot.model.effort_limits[robot.selection.index])
+        self.at_rest = EffortAtRest(
+            robot.joint_names, robot.model.effort_limits[robot.selection.index]
+        )
         if before is not None and before.at_rest.names == self.at_rest.names:
             self.at_rest.doubt = before.at_rest.doubt
         # Seconds since then have digits enough, those since 1970 have not.

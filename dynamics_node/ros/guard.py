@@ -28,6 +28,7 @@ def guarded(method):
             self.on_internal_error(f'internal error in {method.__name__}: {error}')
             log(self, error)
             return None
+
     return safe
 
 
@@ -42,6 +43,7 @@ def logged(method):
         except Exception as error:
             log(self, error)
             return None
+
     return safe
 
 
@@ -61,6 +63,7 @@ def guarded_service(method):
         except Exception as error:
             log(self, error)
             return self.failed(type(response)(), f'internal error: {error}')
+
     return safe
 
 

@@ -82,7 +82,8 @@ class Hints:
                 # Not as a parameter on the command line: rcl reads it as YAML, which most are not.
                 'Publish it: ros2 run robot_state_publisher robot_state_publisher my_arm.urdf',
                 'or start this node with it: ros2 run dynamics_node dynamics_node --ros-args -p '
-                'robot_description_file:=my_arm.urdf']
+                'robot_description_file:=my_arm.urdf',
+            ]
         return '\n  '.join(lines)
 
     def _about_states(self, robot, missing):
@@ -94,20 +95,26 @@ class Hints:
         heard = robot.buffer.newest_names
         namespace = topic.rpartition('/')[0]
         if not self._node.count_publishers(topic):
-            lines += ['No node publishes there' + (' any more.' if heard else '.'),
-                      f'Start the broadcaster: ros2 control load_controller{_manager(namespace)} '
-                      '--set-state active joint_state_broadcaster']
+            lines += [
+                'No node publishes there' + (' any more.' if heard else '.'),
+                f'Start the broadcaster: ros2 control load_controller{_manager(namespace)} '
+                '--set-state active joint_state_broadcaster',
+            ]
         elif not heard:
-            lines.append('A node publishes there, but nothing comes: ros2 topic info --verbose '
-                         f'{topic}')
+            lines.append(
+                f'A node publishes there, but nothing comes: ros2 topic info --verbose {topic}'
+            )
         elif self._now() - self._last_message > QUIET:
             # The publisher is still known some time after its process was killed.
-            lines.append(f'Nothing comes any more; {_some([quoted(name) for name in heard])} came '
-                         'last. Look whether the broadcaster is still active:  ros2 control '
-                         f'list_controllers{_manager(namespace)}')
+            lines.append(
+                f'Nothing comes any more; {_some([quoted(name) for name in heard])} came '
+                'last. Look whether the broadcaster is still active:  ros2 control '
+                f'list_controllers{_manager(namespace)}'
+            )
         else:
-            lines += _about_names(robot, missing, heard, topic,
-                                  Counter(robot.buffer.rejected) - self._rejected)
+            lines += _about_names(
+                robot, missing, heard, topic, Counter(robot.buffer.rejected) - self._rejected
+            )
         return '\n  '.join(lines)
 
     def _heard_elsewhere(self, subscription, name, endings=('',)):
@@ -117,9 +124,10 @@ class Hints:
             return [f'{text}.' for text in texts]
         if self._node.count_publishers(subscription.topic_name):
             return []
-        return [f'But {topic} has it: add to the command line  --ros-args '
-                f'{self._rule(topic, name)}'
-                for topic in published_elsewhere(self._node, subscription, endings)]
+        return [
+            f'But {topic} has it: add to the command line  --ros-args {self._rule(topic, name)}'
+            for topic in published_elsewhere(self._node, subscription, endings)
+        ]
 
     def _rule(self, topic, name):
         # Where the description is, everything else of that robot is, too. A broadcaster with
@@ -150,17 +158,21 @@ def unheard(node, publisher):
     topic = publisher.topic_name
     listened = listened_elsewhere(node, publisher)
     if listened:
-        return ('nothing listens there, but somebody does on ' + ', '.join(listened) + ': if that '
-                'is an effort controller, start the node with  --ros-args -p '
-                f'command_topic:={listened[0]}')
+        return (
+            'nothing listens there, but somebody does on ' + ', '.join(listened) + ': if that '
+            'is an effort controller, start the node with  --ros-args -p '
+            f'command_topic:={listened[0]}'
+        )
     namespace, _, controller = topic.rpartition('/')[0].rpartition('/')
     manager = _manager(namespace)
     # Only who listens before the output is on sees the ramp.
-    return ('nothing listens there: call ~/enable with false first, because a controller that '
-            'begins to listen now gets the whole effort at once; then look with  ros2 control '
-            f'list_controllers{manager}  and start it with  ros2 control load_controller{manager}'
-            f' --set-state active {controller or "forward_effort_controller"}  or set '
-            'command_topic to that of another effort controller')
+    return (
+        'nothing listens there: call ~/enable with false first, because a controller that '
+        'begins to listen now gets the whole effort at once; then look with  ros2 control '
+        f'list_controllers{manager}  and start it with  ros2 control load_controller{manager}'
+        f' --set-state active {controller or "forward_effort_controller"}  or set '
+        'command_topic to that of another effort controller'
+    )
 
 
 def _manager(namespace):
@@ -170,22 +182,32 @@ def _manager(namespace):
 
 def _about_names(robot, missing, heard, topic, rejected):
     # Messages come, but nothing that can be used of these joints.
-    lines = [f'There come {_some([quoted(name) for name in heard])}: look with  '
-             f'ros2 topic echo --once {topic}']
+    lines = [
+        f'There come {_some([quoted(name) for name in heard])}: look with  '
+        f'ros2 topic echo --once {topic}'
+    ]
     if set(missing) <= set(heard):
-        dropped = ', '.join(f'{count} for {kind}'
-                            for kind, count in rejected.most_common())
-        return [*lines, f'They are dropped ({dropped}): the warnings above say why'] \
-            if dropped else lines
+        dropped = ', '.join(f'{count} for {kind}' for kind, count in rejected.most_common())
+        return (
+            [*lines, f'They are dropped ({dropped}): the warnings above say why']
+            if dropped
+            else lines
+        )
     prefix = _prefix(missing, heard)
     if prefix:
-        return [*lines, f'They are named with {quoted(prefix)} before: use the description in '
-                        'which the joints have these names (often an argument of its xacro '
-                        'file, prefix or tf_prefix)']
+        return [
+            *lines,
+            f'They are named with {quoted(prefix)} before: use the description in '
+            'which the joints have these names (often an argument of its xacro '
+            'file, prefix or tf_prefix)',
+        ]
     there = [name for name in robot.joint_names if name not in missing]
     if there:
-        return [*lines, 'If the others are all that you want: add to the command line  '
-                        f"--ros-args -p joints:='[{', '.join(there)}]'"]
+        return [
+            *lines,
+            'If the others are all that you want: add to the command line  '
+            f"--ros-args -p joints:='[{', '.join(there)}]'",
+        ]
     return [*lines, 'The description must name its joints as they are named there']
 
 
@@ -193,7 +215,7 @@ def _prefix(missing, heard):
     """Return what stands before every missing name in the names heard, '' if nothing does."""
     for name in heard:
         if name.endswith(missing[0]):
-            prefix = name[:len(name) - len(missing[0])]
+            prefix = name[: len(name) - len(missing[0])]
             if all(prefix + other in heard for other in missing):
                 return prefix
     return ''

@@ -38,8 +38,10 @@ def end_of_names(data):
     """
     number = _COUNTS.get(data[:2])
     if number is None:
-        raise RejectedStateError('unreadable', 'expected plain CDR, got representation '
-                                 f'{data[:2].hex() or "of no bytes"}')
+        raise RejectedStateError(
+            'unreadable',
+            f'expected plain CDR, got representation {data[:2].hex() or "of no bytes"}',
+        )
     try:
         at = _behind_text(data, FRAME, number)
         count, at = _count(data, at, number)
@@ -51,8 +53,9 @@ def end_of_names(data):
         for what in ('positions', 'velocities', 'efforts'):
             count, at = _count(data, at, number)
             if count > MAX_NAMES:
-                raise RejectedStateError('length', f'expected at most {MAX_NAMES} {what}, got '
-                                         f'{count}')
+                raise RejectedStateError(
+                    'length', f'expected at most {MAX_NAMES} {what}, got {count}'
+                )
             if count:
                 at += (ORIGIN - at) % _DOUBLE + count * _DOUBLE
         if at <= len(data):
@@ -60,12 +63,13 @@ def end_of_names(data):
     except struct.error:
         # It ends within a count.
         pass
-    raise RejectedStateError('unreadable', f'expected a joint state, got {len(data)} bytes that '
-                             'end too early')
+    raise RejectedStateError(
+        'unreadable', f'expected a joint state, got {len(data)} bytes that end too early'
+    )
 
 
 def _behind_text(data, at, number):
-    length, = number.unpack_from(data, at)
+    (length,) = number.unpack_from(data, at)
     # What follows a text begins at a multiple of four.
     return at + _COUNT + (length + 3) // 4 * 4
 

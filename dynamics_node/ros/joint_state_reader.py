@@ -59,7 +59,7 @@ class JointStateReader:
             What rclpy raises if it finds fault with it all the same.
 
         """
-        if data[FRAME:self._end] == self._names and data[:ORIGIN] == _REPRESENTATION:
+        if data[FRAME : self._end] == self._names and data[:ORIGIN] == _REPRESENTATION:
             numbers = self._as_before(data) or self._measure(data)
             if numbers is not None:
                 message, stamp = self._message, self._message.header.stamp
@@ -109,7 +109,7 @@ def _span(data, at):
     place = slice(at, at + _COUNT.size)
     if place.stop > len(data):
         return place, slice(place.stop, place.stop)
-    count, = _COUNT.unpack_from(data, at)
+    (count,) = _COUNT.unpack_from(data, at)
     begin = place.stop
     if count:
         begin += (ORIGIN - begin) % _DOUBLE  # numbers begin at a multiple of their size

@@ -57,10 +57,12 @@ def _run(args, signals):
     import rclpy
     import rclpy.logging
     from rclpy.signals import SignalHandlerOptions
+
     try:
         # rclpy's own handlers would end the context before the arm has been brought to rest.
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         from .command_line import parse
+
         options = parse(sys.argv if args is None else args)
         node, executor = _start(signals, options)
     except Exception as error:  # a command line, a parameter or a description that is refused
@@ -83,6 +85,7 @@ def _start(signals, options):
     from .node import DynamicsNode
     from ..dynamics import RobotModel
     from ..kernels.warm_up import warm_up
+
     warm_up()
     RobotModel.from_urdf('<robot name="warm_up"><link name="base"/></robot>')
     if signals.name:
@@ -102,6 +105,7 @@ class _Loop:
         self._failing_since = 0.0
         # The wait of the events executor ends by itself, for it may not last for ever.
         from rclpy.executors import SingleThreadedExecutor
+
         self._timeout = None if isinstance(executor, SingleThreadedExecutor) else 0.1
 
     def run(self):
@@ -126,8 +130,10 @@ class _Loop:
         return code
 
     def _has_failed(self):
-        return (self._failures >= MAX_FAILURES
-                and time.monotonic() - self._failing_since >= FAILING_FOR)
+        return (
+            self._failures >= MAX_FAILURES
+            and time.monotonic() - self._failing_since >= FAILING_FOR
+        )
 
     def _spin_once(self, timeout):
         try:
@@ -151,9 +157,10 @@ class _Loop:
         while path.is_on and time.monotonic() < deadline:
             if self._signals.count > seen:
                 seen = self._signals.count
-                self._node.logger.warning('second signal: the efforts go to zero within '
-                                          f'{HURRY_WITHIN:g} s; now '
-                                          + path.output.limiter.describe_last())
+                self._node.logger.warning(
+                    'second signal: the efforts go to zero within '
+                    f'{HURRY_WITHIN:g} s; now ' + path.output.limiter.describe_last()
+                )
                 path.close(time.monotonic(), reason, HURRY_WITHIN)
             if self._has_failed():
                 time.sleep(STOP_SLICE)
@@ -167,7 +174,8 @@ class _Loop:
         is_at_rest = not path.output.limiter.last.any()
         if not is_at_rest:
             self._node.logger.error(
-                'the last efforts may stay in force: ' + path.output.limiter.describe_last())
+                'the last efforts may stay in force: ' + path.output.limiter.describe_last()
+            )
         try:
             output.flush(0.2)
         except Exception:
@@ -191,6 +199,7 @@ def _load_the_rest():
     # second.
     import scipy.interpolate
     import scipy.spatial.transform  # noqa: F401
+
     gc.freeze()
 
 

@@ -26,10 +26,11 @@ def mismatches(node, subscription):
     """
     own = type_name(subscription.msg_type)
     # What is really in force: it may have been overridden by parameters.
-    wanted = [info.qos_profile for info in
-              node.get_subscriptions_info_by_topic(subscription.topic_name)
-              if info.node_name == node.get_name()
-              and info.node_namespace == node.get_namespace()]
+    wanted = [
+        info.qos_profile
+        for info in node.get_subscriptions_info_by_topic(subscription.topic_name)
+        if info.node_name == node.get_name() and info.node_namespace == node.get_namespace()
+    ]
     found = []
     for publisher in node.get_publishers_info_by_topic(subscription.topic_name):
         name = f'{publisher.node_namespace.rstrip("/")}/{publisher.node_name}'

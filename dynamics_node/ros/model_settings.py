@@ -49,6 +49,7 @@ def configured(robot, values, before=None):
         If the payload's link is unknown or no real body has its inertia.
 
     """
+
     def has_changed(*names):
         return before is None or any(values[name] != before[name] for name in names)
 
@@ -62,18 +63,27 @@ def configured(robot, values, before=None):
     if has_changed('payload.link', 'payload.mass', 'payload.com', 'payload.inertia'):
         if values['payload.link']:
             check_link(model.tree.links, values['payload.link'], 'payload.link')
-        model = model.with_payload(values['payload.link'], values['payload.mass'],
-                                   values['payload.com'], tensor(values['payload.inertia']))
+        model = model.with_payload(
+            values['payload.link'],
+            values['payload.mass'],
+            values['payload.com'],
+            tensor(values['payload.inertia']),
+        )
     return model
 
 
 def _friction(robot, values):
     tree = robot.model.tree
     smoothing = values['friction.smoothing_velocity']
-    return (_of_all(robot, values['friction.viscous'], tree.friction[:, 0]),
-            _of_all(robot, values['friction.coulomb'], tree.friction[:, 1]),
-            _of_all(robot, smoothing * len(robot.joint_names) if len(smoothing) == 1
-                    else smoothing, SMOOTHING_VELOCITY))
+    return (
+        _of_all(robot, values['friction.viscous'], tree.friction[:, 0]),
+        _of_all(robot, values['friction.coulomb'], tree.friction[:, 1]),
+        _of_all(
+            robot,
+            smoothing * len(robot.joint_names) if len(smoothing) == 1 else smoothing,
+            SMOOTHING_VELOCITY,
+        ),
+    )
 
 
 def _of_all(robot, chosen, others):

@@ -73,24 +73,32 @@ class DynamicsNode(Node):
         self.parameters = Parameters(self)
         self._results = Results(self, self.parameters)
         self._external_torque = ExternalTorque(self, self.parameters)
-        self.output = CommandOutput(self, self.parameters, self._output_changed,
-                                    self._check_if_due)
+        self.output = CommandOutput(
+            self, self.parameters, self._output_changed, self._check_if_due
+        )
         self.path = self.output.path
         self.states = StateInput(self, self.parameters, self.output, self, raw_states)
         self._wants_enable = self.parameters['enable_on_start']
         self.source = DescriptionSource(self, self.parameters, self._described)
-        monitor = PublisherMonitor(self, self.output.topic, self.states, self.source,
-                                   self.parameters['allow_several_state_publishers'])
+        monitor = PublisherMonitor(
+            self,
+            self.output.topic,
+            self.states,
+            self.source,
+            self.parameters['allow_several_state_publishers'],
+        )
         controllers = Controllers(self, self.output.topic)
-        self._enabling = Enabling(self, self.parameters, self._get_robot, self.output, monitor,
-                                  controllers, self.source)
-        self._diagnostics = Diagnostics(self, self.parameters, self._get_robot, self.states,
-                                        self.output, self._external_torque)
+        self._enabling = Enabling(
+            self, self.parameters, self._get_robot, self.output, monitor, controllers, self.source
+        )
+        self._diagnostics = Diagnostics(
+            self, self.parameters, self._get_robot, self.states, self.output, self._external_torque
+        )
         self._answering = [
             DynamicsServices(self, self._get_robot, self.parameters),
             SettingServices(self, self._get_robot, self.parameters),
-            TrajectoryServices(self, self._get_robot, self.parameters,
-                               lambda: self.path.is_on)]
+            TrajectoryServices(self, self._get_robot, self.parameters, lambda: self.path.is_on),
+        ]
         self._hints = Hints(self, self._get_robot, self.source, self.states)
         self.parameters.watch(self._reconfigured, self._check_against_robot)
         self._protection = Protection(self, self.output, monitor, controllers, self._get_robot)
@@ -99,7 +107,8 @@ class DynamicsNode(Node):
     def create_service(self, *arguments, callback_group=None, **options):
         """Create a service as rclpy does; by default it waits for the torque, see ServiceGroup."""
         return super().create_service(
-            *arguments, callback_group=callback_group or self.service_group, **options)
+            *arguments, callback_group=callback_group or self.service_group, **options
+        )
 
     def on_internal_error(self, message):
         """Stop the output: a callback on the torque path has failed."""
@@ -114,8 +123,10 @@ class DynamicsNode(Node):
     def _described(self, source, origin):
         # True if it was taken, or refused for good; False if it may be offered again.
         if self.path.is_on:
-            self.logger.warning(f'new robot description from {origin} waits until the output is '
-                                'off: disable it to take the description')
+            self.logger.warning(
+                f'new robot description from {origin} waits until the output is '
+                'off: disable it to take the description'
+            )
             return False
         try:
             robot = read_robot(source, self.parameters.values)
@@ -143,20 +154,30 @@ class DynamicsNode(Node):
         return True
 
     def _announce(self, robot, origin):
-        self.logger.info(f'robot description from {origin}: {robot.model}; joints: '
-                         f'{", ".join(robot.joint_names)}')
+        self.logger.info(
+            f'robot description from {origin}: {robot.model}; joints: '
+            f'{", ".join(robot.joint_names)}'
+        )
         for warning in robot.model.warnings:
             self.logger.warning(warning)
 
     def _check_lengths(self, values, robot):
         count = len(robot.joint_names)
-        for name in ('effort_limits', 'effort_rate_limits', 'velocity_limits', 'effort_scale',
-                     *PER_JOINT, 'friction.smoothing_velocity'):
+        for name in (
+            'effort_limits',
+            'effort_rate_limits',
+            'velocity_limits',
+            'effort_scale',
+            *PER_JOINT,
+            'friction.smoothing_velocity',
+        ):
             allowed = (0, 1, count) if name == 'friction.smoothing_velocity' else (0, count)
             if len(values[name]) not in allowed:
-                raise ParameterError(f'{name}: expected {count} numbers for '
-                                     f'{", ".join(robot.joint_names)}, or none; got '
-                                     f'{len(values[name])}')
+                raise ParameterError(
+                    f'{name}: expected {count} numbers for '
+                    f'{", ".join(robot.joint_names)}, or none; got '
+                    f'{len(values[name])}'
+                )
 
     def _check_against_robot(self, values):
         robot, before = self._robot, self.parameters.values
@@ -180,8 +201,12 @@ class DynamicsNode(Node):
         robot = self._robot
         if robot is not None:
             self.path.configure(
-                time.monotonic(), output_settings(values), robot.compensation(values),
-                _limiter(robot, values), robot.motion_limits(values['velocity_limits']))
+                time.monotonic(),
+                output_settings(values),
+                robot.compensation(values),
+                _limiter(robot, values),
+                robot.motion_limits(values['velocity_limits']),
+            )
         self.output.configured()
         self._external_torque.configure()
 
@@ -190,8 +215,9 @@ class DynamicsNode(Node):
         robot, effort = self._robot, self.path.gravity_torque
         if not all(map(math.isfinite, effort.tolist())):
             if self._not_finite.is_due():
-                self.logger.warning('gravity torque is not finite at this joint state: not '
-                                    'published')
+                self.logger.warning(
+                    'gravity torque is not finite at this joint state: not published'
+                )
             return
         if not self._has_states:
             # Not `once=True`: rclpy looks through the source files for the caller at every
@@ -232,10 +258,13 @@ class DynamicsNode(Node):
     def _warn_of_silent_joints(self, robot):
         # They get no effort, but gravity depends on where they are.
         silent = self.path.is_driving and robot.stale_others(
-            robot.selection.index, time.monotonic(), self.parameters['state_timeout'])
+            robot.selection.index, time.monotonic(), self.parameters['state_timeout']
+        )
         if silent and self._silent.is_due():
-            self.logger.warning(f'joint_states say nothing of {", ".join(silent)}: the efforts '
-                                'take such a joint where it was last measured, or neutral')
+            self.logger.warning(
+                f'joint_states say nothing of {", ".join(silent)}: the efforts '
+                'take such a joint where it was last measured, or neutral'
+            )
 
     async def _enable_on_start(self):
         try:
@@ -256,5 +285,9 @@ class DynamicsNode(Node):
 def _limiter(robot, values):
     limits = robot.effort_limits(values['effort_limits'])
     rates, scale = values['effort_rate_limits'], values['effort_scale']
-    return EffortLimiter(limits, np.array(rates) if rates else limits / 0.1,
-                         np.array(scale) if scale else np.ones(len(limits)), robot.joint_names)
+    return EffortLimiter(
+        limits,
+        np.array(rates) if rates else limits / 0.1,
+        np.array(scale) if scale else np.ones(len(limits)),
+        robot.joint_names,
+    )

@@ -68,8 +68,13 @@ class Parameter:
             If the type or the value is wrong.
 
         """
-        convert = {DOUBLE: self._number, DOUBLES: self._numbers, TEXT: self._text,
-                   TEXTS: self._texts, FLAG: self._flag}
+        convert = {
+            DOUBLE: self._number,
+            DOUBLES: self._numbers,
+            TEXT: self._text,
+            TEXTS: self._texts,
+            FLAG: self._flag,
+        }
         return convert[self.kind](value)
 
     def constraints(self):
@@ -90,8 +95,11 @@ class Parameter:
         if math.isinf(self.low) and math.isinf(self.high):
             return 'a finite number'
         low = f'{">" if self.low_open else ">="} {self.low:g}'
-        return (f'a finite number {low}' if math.isinf(self.high)
-                else f'a number {low} and <= {self.high:g}')
+        return (
+            f'a finite number {low}'
+            if math.isinf(self.high)
+            else f'a number {low} and <= {self.high:g}'
+        )
 
     def _numbers(self, value):
         if self.takes_one and isinstance(value, (int, float)):

@@ -78,7 +78,8 @@ class Parameters:
         """
         kinds = {parameter.name: parameter for parameter in PARAMETERS}
         result = self._node.set_parameters_atomically(
-            [ros_parameter(kinds[name], value) for name, value in values.items()])
+            [ros_parameter(kinds[name], value) for name, value in values.items()]
+        )
         if not result.successful:
             raise ParameterError(result.reason)
 
@@ -89,8 +90,10 @@ class Parameters:
         for name in sorted(set(given) - set(names)):
             alike = difflib.get_close_matches(name, names, n=1, cutoff=0.8)
             if alike and not self._node.has_parameter(name):
-                self.logger.warning(f"there is no parameter '{name}', and its value is ignored: "
-                                    f"is '{alike[0]}' meant?")
+                self.logger.warning(
+                    f"there is no parameter '{name}', and its value is ignored: "
+                    f"is '{alike[0]}' meant?"
+                )
 
     def _check(self, ros_parameters):
         try:
@@ -113,6 +116,5 @@ class Parameters:
 
     def _merged(self, ros_parameters):
         values = dict(self.values)
-        values.update((item.name, item.value) for item in ros_parameters
-                      if item.name in values)
+        values.update((item.name, item.value) for item in ros_parameters if item.name in values)
         return check_all(values)

@@ -67,7 +67,8 @@ class Protection:
         if self._path.is_driving and new:
             # It has missed the start ramp and would get the whole effort at once.
             self._path.restart_from_zero(
-                time.monotonic(), f'{", ".join(new)} has begun to listen to the commands')
+                time.monotonic(), f'{", ".join(new)} has begun to listen to the commands'
+            )
         self._had_listener = has_listener
         self._path.monitored(time.monotonic())
 
@@ -75,8 +76,9 @@ class Protection:
         lost = self._controllers.update()
         if not self._path.is_on:
             return
-        inactive = [reason for item in self._controllers.listeners.values()
-                    for reason in item.inactive()]
+        inactive = [
+            reason for item in self._controllers.listeners.values() for reason in item.inactive()
+        ]
         gone = [f'{name} no longer listens to the commands' for name in lost]
         if inactive or gone:
             self._lose(now, '; '.join(inactive + gone))
@@ -90,5 +92,8 @@ class Protection:
         if not self._controllers.takes_commands():
             self._path.lose_controller(now, reason)
         elif self._path.is_driving:
-            self._path.fault(now, f'{reason}; its hardware may hold the last efforts: '
-                             + self._path.output.limiter.describe_last())
+            self._path.fault(
+                now,
+                f'{reason}; its hardware may hold the last efforts: '
+                + self._path.output.limiter.describe_last(),
+            )

@@ -34,15 +34,19 @@ class PublisherMonitor:
         reasons = []
         others = self._node.count_publishers(self._command_topic) - 1
         if others > 0:
-            reasons.append(f'{others} other publisher(s) on {self._command_topic}'
-                           f'{self._names(self._command_topic)}: two sources of effort would '
-                           'fight')
+            reasons.append(
+                f'{others} other publisher(s) on {self._command_topic}'
+                f'{self._names(self._command_topic)}: two sources of effort would '
+                'fight'
+            )
         sources = self._states.count_publishers()
         if sources > 1 and not self._allows_several:
             topic = self._states.topic
-            reasons.append(f'{sources} publishers on {topic}{self._names(topic)}: stop the '
-                           'others (a forgotten joint_state_publisher?) or set '
-                           'allow_several_state_publishers')
+            reasons.append(
+                f'{sources} publishers on {topic}{self._names(topic)}: stop the '
+                'others (a forgotten joint_state_publisher?) or set '
+                'allow_several_state_publishers'
+            )
         return reasons
 
     def description_conflicts(self):
@@ -50,14 +54,18 @@ class PublisherMonitor:
         topic = self._source.topic
         if topic is None or (count := self._node.count_publishers(topic)) < 2:
             return []
-        return [f'{count} publishers on {topic}{self._names(topic)}: which of them describes '
-                'this robot? Stop the others, or give the description as the parameter '
-                'robot_description_file']
+        return [
+            f'{count} publishers on {topic}{self._names(topic)}: which of them describes '
+            'this robot? Stop the others, or give the description as the parameter '
+            'robot_description_file'
+        ]
 
     def _names(self, topic):
         own = f'{self._node.get_namespace().rstrip("/")}/{self._node.get_name()}'
-        names = [f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-                 for info in self._node.get_publishers_info_by_topic(topic)]
+        names = [
+            f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+            for info in self._node.get_publishers_info_by_topic(topic)
+        ]
         if own in names:
             names.remove(own)  # once: another node may have the same name
         return f' ({", ".join(sorted(set(names)))})' if names else ''

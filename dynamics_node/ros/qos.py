@@ -12,16 +12,25 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 
 
 def _newest(reliability, durability=QoSDurabilityPolicy.VOLATILE, depth=1):
-    return QoSProfile(history=QoSHistoryPolicy.KEEP_LAST, depth=depth, reliability=reliability,
-                      durability=durability)
+    return QoSProfile(
+        history=QoSHistoryPolicy.KEEP_LAST,
+        depth=depth,
+        reliability=reliability,
+        durability=durability,
+    )
 
 
 # Places in the queue of joint_states, for one publisher and for several.
 SINGLE_DEPTH, SHARED_DEPTH = 1, 8
 # rclpy's default policies leave out the durability.
-JOINT_STATES_OVERRIDES = QoSOverridingOptions((
-    QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY,
-    QoSPolicyKind.DURABILITY))
+JOINT_STATES_OVERRIDES = QoSOverridingOptions(
+    (
+        QoSPolicyKind.HISTORY,
+        QoSPolicyKind.DEPTH,
+        QoSPolicyKind.RELIABILITY,
+        QoSPolicyKind.DURABILITY,
+    )
+)
 
 
 def joint_states(several_publishers):
@@ -33,8 +42,10 @@ def joint_states(several_publishers):
     would be lost whenever the gripper's comes right behind it; so then there are more places.
 
     """
-    return _newest(QoSReliabilityPolicy.BEST_EFFORT,
-                   depth=SHARED_DEPTH if several_publishers else SINGLE_DEPTH)
+    return _newest(
+        QoSReliabilityPolicy.BEST_EFFORT,
+        depth=SHARED_DEPTH if several_publishers else SINGLE_DEPTH,
+    )
 
 
 # As robot_state_publisher publishes it: whoever comes later still gets it.

@@ -116,11 +116,14 @@ class Query:
     def _checked(self, name, field):
         values = from_field(field)
         if values.size != len(self.names):
-            raise ArgumentError(f'{name}: expected {len(self.names)} values for '
-                                f'{", ".join(self.names)}, or none; got {values.size}')
+            raise ArgumentError(
+                f'{name}: expected {len(self.names)} values for '
+                f'{", ".join(self.names)}, or none; got {values.size}'
+            )
         if not np.isfinite(values).all():
-            raise ArgumentError(f'{name}: expected finite values, got '
-                                + not_finite(self.names, values))
+            raise ArgumentError(
+                f'{name}: expected finite values, got ' + not_finite(self.names, values)
+            )
         return values
 
 

@@ -23,10 +23,12 @@ class Results:
 
         """
         self._parameters = parameters
-        self._gravity = node.create_publisher(JointState, '~/gravity_torque', RESULT,
-                                              event_callbacks=NO_EVENTS)
-        self._dynamics = node.create_publisher(JointDynamics, '~/dynamics', RESULT,
-                                               event_callbacks=NO_EVENTS)
+        self._gravity = node.create_publisher(
+            JointState, '~/gravity_torque', RESULT, event_callbacks=NO_EVENTS
+        )
+        self._dynamics = node.create_publisher(
+            JointDynamics, '~/dynamics', RESULT, event_callbacks=NO_EVENTS
+        )
         self._is_gravity_wanted = Listened(self._gravity)
         self._is_dynamics_wanted = Listened(self._dynamics)
 
@@ -50,8 +52,11 @@ class Results:
             self._publish_dynamics(robot, stamp)
 
     def _publish_gravity(self, robot, stamp, effort):
-        result = JointState(name=list(robot.joint_names), effort=to_field(effort),
-                            position=to_field(robot.buffer.position[robot.selection.index]))
+        result = JointState(
+            name=list(robot.joint_names),
+            effort=to_field(effort),
+            position=to_field(robot.buffer.position[robot.selection.index]),
+        )
         result.header.stamp = stamp
         self._gravity.publish(result)
 
@@ -68,9 +73,11 @@ class Results:
             return
         block = np.ix_(index, index)
         result = JointDynamics(
-            joint_names=list(robot.joint_names), position=to_field(q[index]),
+            joint_names=list(robot.joint_names),
+            position=to_field(q[index]),
             mass_matrix=to_field(terms.mass_matrix[block]),
-            gravity_torque=to_field(terms.gravity_torque[index]))
+            gravity_torque=to_field(terms.gravity_torque[index]),
+        )
         if is_known:
             result.velocity = to_field(velocity)
             result.coriolis_matrix = to_field(terms.coriolis_matrix[block])

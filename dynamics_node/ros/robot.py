@@ -36,8 +36,10 @@ def read_robot(source, values):
     tree = build_tree(read_urdf(source))
     if not tree.joint_names:
         raise DynamicsError('the robot has no joint that can be moved')
-    return Robot(RobotModel(tree) if values['machine_code'] else one_off_model(tree),
-                 values['joints'])
+    return Robot(
+        RobotModel(tree) if values['machine_code'] else one_off_model(tree), values['joints']
+    )
+
 
 # Joints that a message lists as beyond their position limits.
 _MOST_SHOWN = 8
@@ -89,8 +91,8 @@ class Robot:
         self.model = model
         self.selection = JointSelection(model, joints)
         self.buffer = JointStateBuffer(
-            model.joint_names, self.selection.names, model.neutral_position,
-            self.motion_limits(()))
+            model.joint_names, self.selection.names, model.neutral_position, self.motion_limits(())
+        )
         self.refused_since = ''
         self._asked: tuple | None = None
         self._answer = model
@@ -148,9 +150,13 @@ class Robot:
 
     def compensation(self, values):
         """Return the `Compensation` that the parameters ask for."""
-        return Compensation(self.model, None if self.has_all_in_order else self.selection.index,
-                            values['compensate.gravity'], values['compensate.coriolis'],
-                            values['compensate.friction'])
+        return Compensation(
+            self.model,
+            None if self.has_all_in_order else self.selection.index,
+            values['compensate.gravity'],
+            values['compensate.coriolis'],
+            values['compensate.friction'],
+        )
 
     def motion_limits(self, velocity_limits):
         """
@@ -170,8 +176,13 @@ class Robot:
         allowed = np.array(model.velocity_limits)
         if velocity_limits:
             allowed[self.selection.index] = velocity_limits
-        return MotionLimits(model.joint_names, model.velocity_limits, model.position_limits,
-                            model.is_continuous, allowed)
+        return MotionLimits(
+            model.joint_names,
+            model.velocity_limits,
+            model.position_limits,
+            model.is_continuous,
+            allowed,
+        )
 
     def measured_position(self, now, timeout):
         """
@@ -197,12 +208,17 @@ class Robot:
         """
         stale = self.buffer.stale_joints(now, timeout)
         if stale:
-            shared = (f'; {self.state_publishers} nodes publish joint_states: if an arm and its '
-                      'gripper have a broadcaster each, set allow_several_state_publishers at '
-                      'the start' if self.state_publishers > 1 else '')
+            shared = (
+                f'; {self.state_publishers} nodes publish joint_states: if an arm and its '
+                'gripper have a broadcaster each, set allow_several_state_publishers at '
+                'the start'
+                if self.state_publishers > 1
+                else ''
+            )
             raise StateUnavailableError(
                 f'no joint state within {timeout:g} s for {", ".join(stale)}: publish '
-                f'joint_states, or give positions in the request{shared}')
+                f'joint_states, or give positions in the request{shared}'
+            )
         return self.buffer.position
 
     def beyond_limits(self, index, positions):
@@ -229,8 +245,11 @@ class Robot:
         excess = np.atleast_2d(np.maximum(lower - positions, positions - upper) - slack)
         furthest = np.atleast_2d(positions)[excess.argmax(axis=0), np.arange(len(index))]
         beyond = np.flatnonzero(excess.max(axis=0) > 0.0)
-        shown = [f'{self.model.joint_names[index[i]]} at {furthest[i]:.6g} (limits {lower[i]:g} '
-                 f'to {upper[i]:g})' for i in beyond[:_MOST_SHOWN]]
+        shown = [
+            f'{self.model.joint_names[index[i]]} at {furthest[i]:.6g} (limits {lower[i]:g} '
+            f'to {upper[i]:g})'
+            for i in beyond[:_MOST_SHOWN]
+        ]
         more = f' and {len(beyond) - len(shown)} more' if len(beyond) > len(shown) else ''
         return f'; beyond the position limits: {", ".join(shown)}{more}' if shown else ''
 
@@ -254,8 +273,11 @@ class Robot:
 
         """
         stale = self.stale_others(index, now, timeout)
-        return ('; taken where last measured, or neutral if never: ' + ', '.join(stale)
-                if stale else '')
+        return (
+            '; taken where last measured, or neutral if never: ' + ', '.join(stale)
+            if stale
+            else ''
+        )
 
     def stale_others(self, index, now, timeout):
         """Return the names of the joints that `unseen_others` tells in words, a list of str."""
@@ -308,8 +330,10 @@ class Robot:
         if before is not None:
             was = self._scaled_gravity_torque(self.model, before)
             is_over &= ~((np.abs(was) > limits) & (np.sign(was) == np.sign(G)))
-        return '; '.join(f'{self.joint_names[i]}: {G[i]:.6g}, limit {limits[i]:.6g}'
-                         for i in np.flatnonzero(is_over))
+        return '; '.join(
+            f'{self.joint_names[i]}: {G[i]:.6g}, limit {limits[i]:.6g}'
+            for i in np.flatnonzero(is_over)
+        )
 
     def _scaled_gravity_torque(self, model, values):
         G = model.gravity_torque(self.buffer.position)[self.selection.index]
@@ -317,8 +341,11 @@ class Robot:
 
     def unlimited_joints(self, given):
         """Return the names of the chosen joints that have no effort limit, a list of str."""
-        return [name for name, limit in zip(self.joint_names, self.effort_limits(given),
-                                            strict=True) if np.isnan(limit)]
+        return [
+            name
+            for name, limit in zip(self.joint_names, self.effort_limits(given), strict=True)
+            if np.isnan(limit)
+        ]
 
     def above_urdf(self, values):
         """
@@ -336,13 +363,18 @@ class Robot:
 
         """
         index = self.selection.index
-        stated = {'effort_limits': self.model.effort_limits[index],
-                  'velocity_limits': self.model.velocity_limits[index]}
+        stated = {
+            'effort_limits': self.model.effort_limits[index],
+            'velocity_limits': self.model.velocity_limits[index],
+        }
         return '; '.join(
             f'{parameter} of {name}: {given:g}, in the URDF {limit:g}'
             for parameter, limits in stated.items()
-            for name, given, limit in zip(self.joint_names, values[parameter], limits,
-                                          strict=False) if given > limit)
+            for name, given, limit in zip(
+                self.joint_names, values[parameter], limits, strict=False
+            )
+            if given > limit
+        )
 
     def joints_without_velocity_limit(self, given=()):
         """
@@ -361,8 +393,9 @@ class Robot:
         if given:
             return []
         limits = self.model.velocity_limits[self.selection.index]
-        return [name for name, limit in zip(self.joint_names, limits, strict=True)
-                if np.isnan(limit)]
+        return [
+            name for name, limit in zip(self.joint_names, limits, strict=True) if np.isnan(limit)
+        ]
 
     def is_mass_matrix_positive_definite(self):
         """Tell whether D of the chosen joints is positive definite at the newest state."""

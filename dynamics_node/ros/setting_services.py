@@ -13,9 +13,14 @@ from ..errors import ArgumentError
 
 _TENSOR = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
 # Parameters of which a refusal speaks, and the request's fields that they were set from.
-_FIELDS = {'payload.link': 'link', 'payload.mass': 'inertia.m', 'payload.com': 'inertia.com',
-           'payload.inertia': 'inertia.ixx to izz', 'payload com': 'inertia.com',
-           'payload inertia': 'inertia.ixx to izz'}
+_FIELDS = {
+    'payload.link': 'link',
+    'payload.mass': 'inertia.m',
+    'payload.com': 'inertia.com',
+    'payload.inertia': 'inertia.ixx to izz',
+    'payload com': 'inertia.com',
+    'payload inertia': 'inertia.ixx to izz',
+}
 # Anywhere on the surface of the earth gravity is between these, m/s².
 _LEAST, _MOST = 9.76, 9.84
 
@@ -37,6 +42,7 @@ class SettingServices(Answering):
     @guarded_service
     def set_payload(self, request, response):
         """Put a payload in place of the one before; answer the one in force."""
+
         def fill():
             robot, inertia = self.robot(), request.inertia
             com = (inertia.com.x, inertia.com.y, inertia.com.z)
@@ -45,13 +51,21 @@ class SettingServices(Answering):
             if mass == 0.0:
                 link, com, six = '', (0.0,) * 3, (0.0,) * 6
             elif not link:
-                raise ArgumentError('link: expected the one that carries the payload, got none: '
-                                    f'one of {", ".join(robot.model.link_names)}')
+                raise ArgumentError(
+                    'link: expected the one that carries the payload, got none: '
+                    f'one of {", ".join(robot.model.link_names)}'
+                )
             else:
                 check_link(robot.model.tree.links, link)
             try:
-                self.parameters.set({'payload.link': link, 'payload.mass': mass,
-                                     'payload.com': com, 'payload.inertia': six})
+                self.parameters.set(
+                    {
+                        'payload.link': link,
+                        'payload.mass': mass,
+                        'payload.com': com,
+                        'payload.inertia': six,
+                    }
+                )
             except ParameterError as error:
                 raise ParameterError(_with_fields(str(error))) from error
             over = robot.over_limits(self.parameters.values)
@@ -60,12 +74,15 @@ class SettingServices(Answering):
             if robot.model.tree.links[link].body < 0:
                 return f'{mass:g} kg on {link}, which no joint moves: without any effect'
             return f'{mass:g} kg on {link}' + (
-                f', but gravity torque is above its limit: {over}' if over else '')
+                f', but gravity torque is above its limit: {over}' if over else ''
+            )
+
         return self._with_payload(self.answer(response, fill))
 
     @guarded_service
     def set_gravity(self, request, response):
         """Take another direction of gravity; answer the one in force."""
+
         def fill():
             robot, frame = self.robot(), request.gravity.header.frame_id
             vector = request.gravity.vector
@@ -73,15 +90,20 @@ class SettingServices(Answering):
             if not np.isfinite(gravity).all():
                 raise ArgumentError(f'gravity: expected finite numbers, got {gravity.tolist()}')
             if not gravity.any():
-                raise ArgumentError('gravity: expected a vector that points to the earth, got '
-                                    'zero; for none at all set the parameter gravity')
+                raise ArgumentError(
+                    'gravity: expected a vector that points to the earth, got '
+                    'zero; for none at all set the parameter gravity'
+                )
             if frame not in ('', robot.model.tree.root):
                 gravity = self._turned(robot, frame, gravity)
             self.parameters.set({'gravity': tuple(gravity.tolist())})
             size = float(np.linalg.norm(gravity))
             return f'gravity is {size:.6g} m/s^2 along this vector' + (
-                '' if _LEAST <= size <= _MOST else ', which is not that of the earth: its length '
-                'counts too')
+                ''
+                if _LEAST <= size <= _MOST
+                else ', which is not that of the earth: its length counts too'
+            )
+
         return self._with_gravity(self.answer(response, fill))
 
     def failed(self, response, message):
@@ -95,11 +117,14 @@ class SettingServices(Answering):
         check_link(robot.model.tree.links, frame, 'header.frame_id')
         timeout = self.parameters['state_timeout']
         # Every joint that turns it, also those that are not in `joints`, and no other.
-        if stale := robot.buffer.stale_joints(time.monotonic(), timeout,
-                                              _joints_to(robot.model.tree, frame)):
-            raise ArgumentError(f'header.frame_id: how {frame} is turned is not known: no joint '
-                                f'state within {timeout:g} s for {", ".join(stale)}; publish '
-                                'joint_states, or give gravity in the frame of the root link')
+        if stale := robot.buffer.stale_joints(
+            time.monotonic(), timeout, _joints_to(robot.model.tree, frame)
+        ):
+            raise ArgumentError(
+                f'header.frame_id: how {frame} is turned is not known: no joint '
+                f'state within {timeout:g} s for {", ".join(stale)}; publish '
+                'joint_states, or give gravity in the frame of the root link'
+            )
         return robot.model.link_pose(robot.buffer.position, frame)[:3, :3] @ vector
 
     def _with_payload(self, response):
@@ -109,8 +134,9 @@ class SettingServices(Answering):
             response.link, response.inertia.m = payload.link, payload.mass
             com = response.inertia.com
             com.x, com.y, com.z = payload.com.tolist()
-            for name, value in zip(_TENSOR, payload.inertia[np.triu_indices(3)].tolist(),
-                                   strict=True):
+            for name, value in zip(
+                _TENSOR, payload.inertia[np.triu_indices(3)].tolist(), strict=True
+            ):
                 setattr(response.inertia, name, value)
         return response
 

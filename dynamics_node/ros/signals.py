@@ -72,6 +72,7 @@ class Signals:
                     wake()
                 except Exception:  # the node is gone already: no wait is left to end
                     return
+
         threading.Thread(target=watch, name='signals', daemon=True).start()
         self._ends = reader, writer  # open for the life of the process
 

@@ -72,14 +72,22 @@ class StateInput:
         self._profile = joint_states(parameters['allow_several_state_publishers'])
         self.subscription = self._subscribe(qos_overriding_options=JOINT_STATES_OVERRIDES)
         # Not where the parameters say how deep it is to be.
-        self._adapts = (self._profile.depth == SINGLE_DEPTH
-                        and self._profile.history == QoSHistoryPolicy.KEEP_LAST)
+        self._adapts = (
+            self._profile.depth == SINGLE_DEPTH
+            and self._profile.history == QoSHistoryPolicy.KEEP_LAST
+        )
 
     def _subscribe(self, **options):
         return self._node.create_subscription(
-            JointState, 'joint_states', self._callback, self._profile,
-            event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=self._raw,
-            callback_group=TorqueGroup(), **options)
+            JointState,
+            'joint_states',
+            self._callback,
+            self._profile,
+            event_callbacks=NO_SUBSCRIPTION_EVENTS,
+            raw=self._raw,
+            callback_group=TorqueGroup(),
+            **options,
+        )
 
     def adapt_queue(self):
         """
@@ -138,8 +146,14 @@ class StateInput:
         stamp = header_stamp.sec * 1_000_000_000 + header_stamp.nanosec
         try:
             command = path.process_joint_state(
-                time.monotonic(), message.name, message.position, message.velocity, stamp, clock,
-                message.effort)
+                time.monotonic(),
+                message.name,
+                message.position,
+                message.velocity,
+                stamp,
+                clock,
+                message.effort,
+            )
         except RejectedStateError as error:
             self._warn(error)
             return
@@ -158,8 +172,10 @@ class StateInput:
         if self._path.compensation.needs_velocity and self._path.is_driving:
             names = buffer.joints_without_velocity()
             if names and self._is_due('velocity', 10.0):
-                self.logger.warning(f'joint_states have no velocity of {", ".join(names)}: '
-                                    'compensate.coriolis and compensate.friction take zero')
+                self.logger.warning(
+                    f'joint_states have no velocity of {", ".join(names)}: '
+                    'compensate.coriolis and compensate.friction take zero'
+                )
 
     def _warn(self, error):
         if self._is_due(error.kind):

@@ -47,32 +47,40 @@ class TrajectoryArrays:
         selection = JointSelection(robot.model, trajectory.joint_names or robot.joint_names)
         self.names, self.index = selection.names, selection.index
         points = trajectory.points
-        self.time = np.array([point.time_from_start.sec + point.time_from_start.nanosec * 1e-9
-                              for point in points])
+        self.time = np.array(
+            [point.time_from_start.sec + point.time_from_start.nanosec * 1e-9 for point in points]
+        )
         self.positions = self._values('positions', [point.positions for point in points])
         self.velocities = self._values('velocities', [point.velocities for point in points])
-        self.accelerations = self._values('accelerations',
-                                          [point.accelerations for point in points])
+        self.accelerations = self._values(
+            'accelerations', [point.accelerations for point in points]
+        )
         if np.isnan(self.positions).any():
             missing = int(np.flatnonzero(np.isnan(self.positions).any(axis=1))[0])
-            raise ArgumentError(f'trajectory.points[{missing}].positions: expected '
-                                f'{len(self.names)} numbers for {", ".join(self.names)}; got none')
+            raise ArgumentError(
+                f'trajectory.points[{missing}].positions: expected '
+                f'{len(self.names)} numbers for {", ".join(self.names)}; got none'
+            )
 
     def _values(self, name, fields):
         count = len(self.names)
         lengths = np.fromiter(map(len, fields), dtype=int, count=len(fields))
         wrong = np.flatnonzero((lengths != count) & (lengths != 0))
         if len(wrong):
-            raise ArgumentError(f'trajectory.points[{wrong[0]}].{name}: expected {count} numbers '
-                                f'for {", ".join(self.names)}, or none; got {lengths[wrong[0]]}')
+            raise ArgumentError(
+                f'trajectory.points[{wrong[0]}].{name}: expected {count} numbers '
+                f'for {", ".join(self.names)}, or none; got {lengths[wrong[0]]}'
+            )
         # All at once: a trajectory may have ten thousand points.
         numbers = np.frombuffer(b''.join(fields), dtype=float).reshape(-1, count)
         if not np.isfinite(numbers).all():
             # Inside, NaN stands for what is missing: here it would be believed to be that.
             place = int(np.argmin(np.isfinite(numbers).all(axis=1)))
             point = int(np.flatnonzero(lengths)[place])
-            raise ArgumentError(f'trajectory.points[{point}].{name}: expected finite numbers, or '
-                                f'none; got {not_finite(self.names, numbers[place])}')
+            raise ArgumentError(
+                f'trajectory.points[{point}].{name}: expected finite numbers, or '
+                f'none; got {not_finite(self.names, numbers[place])}'
+            )
         values = np.full((len(fields), count), np.nan)
         values[lengths == count] = numbers
         return values
@@ -112,4 +120,4 @@ def put_efforts(points, efforts):
     data = np.ascontiguousarray(efforts, dtype=float).tobytes()
     width = efforts.shape[1] * 8
     for i, point in enumerate(points):
-        point.effort = array('d', data[i * width:(i + 1) * width])
+        point.effort = array('d', data[i * width : (i + 1) * width])

@@ -34,13 +34,15 @@ class TrajectoryServices(Answering):
         """
         super().__init__(node, get_robot, parameters)
         self._is_driving = is_driving
-        self.serve(ComputeTrajectoryEffort, 'compute_trajectory_effort',
-                   self.compute_trajectory_effort)
+        self.serve(
+            ComputeTrajectoryEffort, 'compute_trajectory_effort', self.compute_trajectory_effort
+        )
         self.serve(GetMaxPayload, 'get_max_payload', self.get_max_payload)
 
     @guarded_service
     def compute_trajectory_effort(self, request, response):
         """Answer the same trajectory with efforts, and where they are above their limits."""
+
         def fill():
             robot, trajectory = self.robot(), request.trajectory
             motion = self._motion(robot, trajectory)
@@ -65,13 +67,16 @@ class TrajectoryServices(Answering):
             response.effort_limits = to_field(limits[motion.index])
             if len(over.points):
                 notes.append(_over_in_words(over, limits, robot.model.joint_names, motion.index))
-            return ('; '.join(notes) or 'all velocities and accelerations were given'
-                    ) + motion.unseen
+            return (
+                '; '.join(notes) or 'all velocities and accelerations were given'
+            ) + motion.unseen
+
         return self.answer(response, fill)
 
     @guarded_service
     def get_max_payload(self, request, response):
         """Answer the largest mass at a point of a link, and the joint that allows no more."""
+
         def fill():
             robot = self.robot()
             link = request.link or robot.model.tip_link
@@ -103,9 +108,13 @@ class TrajectoryServices(Answering):
             response.effort = to_field(finite(effort[index]))
             response.effort_limits = to_field(limits[index])
             if joint >= 0 and joint not in index:
-                notes.insert(0, f'{response.limiting_joint} is not in joint_names: it needs '
-                             f'{effort[joint]:.6g} of {limits[joint]:.6g}')
+                notes.insert(
+                    0,
+                    f'{response.limiting_joint} is not in joint_names: it needs '
+                    f'{effort[joint]:.6g} of {limits[joint]:.6g}',
+                )
             return '; '.join([_in_words(mass, response.limiting_joint, link), *notes]) + unseen
+
         return self.answer(response, fill)
 
     def _motion(self, robot, trajectory):
@@ -113,7 +122,8 @@ class TrajectoryServices(Answering):
             raise ArgumentError(
                 f'trajectory: expected at most {MOST_WHILE_DRIVING} points while the output is '
                 f'on, because the efforts wait for the answer, got {len(trajectory.points)}: ask '
-                'in parts, or while it is off')
+                'in parts, or while it is off'
+            )
         timeout = self.parameters['state_timeout']
         return _Motion(robot, trajectory, timeout)
 
@@ -121,8 +131,9 @@ class TrajectoryServices(Answering):
         # What the node sends is limited after effort_scale; what it never sends has no limit.
         gains = np.ones(len(robot.model.joint_names))
         gains[robot.selection.index] = self.parameters['effort_scale'] or 1.0
-        return np.divide(self._limits(robot), gains, where=gains > 0.0,
-                         out=np.full(len(gains), np.nan))
+        return np.divide(
+            self._limits(robot), gains, where=gains > 0.0, out=np.full(len(gains), np.nan)
+        )
 
     def _limits(self, robot):
         # Of all joints: those that are not chosen have their limits too.
@@ -134,11 +145,16 @@ class TrajectoryServices(Answering):
 def _over_in_words(over, limits, names, index):
     # Joints that are not in the trajectory have no place in the arrays of the answer.
     count = len(over.points)
-    joints = [names[i] if i in index else
-              f'{names[i]} (not in the trajectory: up to {over.peak_effort[i]:.6g} of '
-              f'{limits[i]:.6g})' for i in over.joints.tolist()]
-    return (f'{count} point{"s" if count > 1 else ""} above the effort limit of '
-            + ', '.join(joints))
+    joints = [
+        names[i]
+        if i in index
+        else f'{names[i]} (not in the trajectory: up to {over.peak_effort[i]:.6g} of '
+        f'{limits[i]:.6g})'
+        for i in over.joints.tolist()
+    ]
+    return f'{count} point{"s" if count > 1 else ""} above the effort limit of ' + ', '.join(
+        joints
+    )
 
 
 def _in_words(mass, joint, link):
@@ -154,13 +170,17 @@ class _Motion:
 
     def __init__(self, robot, trajectory, timeout):
         arrays = TrajectoryArrays(robot, trajectory)
-        motion = complete_trajectory(arrays.time, arrays.positions, arrays.velocities,
-                                     arrays.accelerations)
+        motion = complete_trajectory(
+            arrays.time, arrays.positions, arrays.velocities, arrays.accelerations
+        )
         self.names, self.index = arrays.names, arrays.index
         rest = np.zeros(len(robot.model.joint_names))
-        self.states = (arrays.whole(motion.positions, robot.buffer.position),
-                       arrays.whole(motion.velocities, rest),
-                       arrays.whole(motion.accelerations, rest))
+        self.states = (
+            arrays.whole(motion.positions, robot.buffer.position),
+            arrays.whole(motion.velocities, rest),
+            arrays.whole(motion.accelerations, rest),
+        )
         self.notes = [motion.obtained] if motion.obtained else []
-        self.unseen = (robot.unseen_others(arrays.index, time.monotonic(), timeout)
-                       + robot.beyond_limits(arrays.index, motion.positions))
+        self.unseen = robot.unseen_others(
+            arrays.index, time.monotonic(), timeout
+        ) + robot.beyond_limits(arrays.index, motion.positions)

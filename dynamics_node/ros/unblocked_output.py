@@ -32,8 +32,9 @@ class UnblockedOutput:
         os.set_blocking(writer, False)
         os.dup2(writer, descriptor)
         os.close(writer)
-        self._thread = threading.Thread(target=self._pass_on, args=(reader,), daemon=True,
-                                        name=f'output {descriptor}')
+        self._thread = threading.Thread(
+            target=self._pass_on, args=(reader,), daemon=True, name=f'output {descriptor}'
+        )
         self._thread.start()
 
     def close(self):

@@ -22,7 +22,18 @@ from .state_machine import OutputState, OutputStateMachine
 from .torque_path import TorquePath
 
 __all__ = [
-    'EffortAtRest', 'EffortLimiter', 'EffortOutput', 'GravityChange', 'InvalidEffortError',
-    'JointStateBuffer', 'MotionLimits', 'OutputSettings', 'OutputState', 'OutputStateMachine',
-    'RejectedStateError', 'StampTolerance', 'TorquePath', 'self_compensating',
+    'EffortAtRest',
+    'EffortLimiter',
+    'EffortOutput',
+    'GravityChange',
+    'InvalidEffortError',
+    'JointStateBuffer',
+    'MotionLimits',
+    'OutputSettings',
+    'OutputState',
+    'OutputStateMachine',
+    'RejectedStateError',
+    'StampTolerance',
+    'TorquePath',
+    'self_compensating',
 ]

@@ -88,7 +88,12 @@ class EffortAtRest:
         if abs(torque) < self._small[joint]:
             return False
         is_likely = abs(effort - torque) <= LIKELY * max(abs(effort), abs(torque))
-        self.doubt = '' if is_likely else (
-            f'{self.names[joint]} reports {effort:.4g} at rest, where the model says that '
-            f'{torque:.4g} holds it')
+        self.doubt = (
+            ''
+            if is_likely
+            else (
+                f'{self.names[joint]} reports {effort:.4g} at rest, where the model says that '
+                f'{torque:.4g} holds it'
+            )
+        )
         return True

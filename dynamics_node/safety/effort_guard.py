@@ -231,8 +231,11 @@ class EffortGuard:
             else:
                 # A command may be waiting in the queue, behind this call.
                 self._is_suspect = True
-        elif (self.state == OutputState.FAULT and self._heard_zero
-              and silence >= REST * self.settings.timeout):
+        elif (
+            self.state == OutputState.FAULT
+            and self._heard_zero
+            and silence >= REST * self.settings.timeout
+        ):
             self._enter(OutputState.READY, 'the commands have ended at zero: armed again')
         return None
 
@@ -278,8 +281,10 @@ class EffortGuard:
         if self.state != OutputState.FAULT or self._is_ending:
             return False, f'nothing to reset: {self.state.name}, {self.reason}'
         self._must_approach = True
-        text = (f'reset: the next commands are approached from zero within '
-                f'{self.settings.stop_ramp:g} s')
+        text = (
+            f'reset: the next commands are approached from zero within '
+            f'{self.settings.stop_ramp:g} s'
+        )
         self._enter(OutputState.READY, text)
         return True, text
 
@@ -344,26 +349,33 @@ class EffortGuard:
 
     def _clamp(self, efforts):
         limits = self.settings.effort_limits
-        if not limits or all(abs(effort) <= limit
-                             for effort, limit in zip(efforts, limits, strict=True)):
+        if not limits or all(
+            abs(effort) <= limit for effort, limit in zip(efforts, limits, strict=True)
+        ):
             return efforts
         self.clamped += 1
-        return [min(max(effort, -limit), limit)
-                for effort, limit in zip(efforts, limits, strict=True)]
+        return [
+            min(max(effort, -limit), limit) for effort, limit in zip(efforts, limits, strict=True)
+        ]
 
     # Passing ---------------------------------------------------------------------------------
 
     def _pass(self, now, command):
         if self._stall and not self._is_one_step(command):
-            self._approach(now, self._approach_time(command),
-                           f'the guard itself stood still for {self._stall:.3f} s: its output '
-                           'approaches the commands')
+            self._approach(
+                now,
+                self._approach_time(command),
+                f'the guard itself stood still for {self._stall:.3f} s: its output '
+                'approaches the commands',
+            )
         self._stall = 0.0
         if self.state == OutputState.STARTING:
             self._advance(now)
             if self._done < 1.0:
-                command = [start + self._done * (effort - start)
-                           for start, effort in zip(self._start, command, strict=True)]
+                command = [
+                    start + self._done * (effort - start)
+                    for start, effort in zip(self._start, command, strict=True)
+                ]
             else:
                 self._enter(OutputState.ACTIVE, 'commands pass')
         return self._returned(command)
@@ -378,8 +390,10 @@ class EffortGuard:
         return command
 
     def _come_back(self, now, command):
-        if any(distance > NEAR * scale for distance, scale in zip(
-                self._distance(command), self._scale(), strict=True)):
+        if any(
+            distance > NEAR * scale
+            for distance, scale in zip(self._distance(command), self._scale(), strict=True)
+        ):
             self.refused['during a fade'] += 1
             return None
         self.bridged += 1
@@ -403,13 +417,18 @@ class EffortGuard:
             self._must_approach, self._stall = False, 0.0
             if len(self.output) != len(command):
                 self.output = [0.0] * len(command)
-            self._approach(now, max(self.settings.stop_ramp, self._approach_time(command)),
-                           'after ~/reset the output approaches the commands')
+            self._approach(
+                now,
+                max(self.settings.stop_ramp, self._approach_time(command)),
+                'after ~/reset the output approaches the commands',
+            )
             return self._pass(now, command)
         if not is_beginning:
             return self._refuse('under way', 'commands were under way before they could pass')
-        return self._refuse('not near zero', 'commands begin with up to '
-                            f'{max(map(abs, command)):.4g}, too far from zero')
+        return self._refuse(
+            'not near zero',
+            f'commands begin with up to {max(map(abs, command)):.4g}, too far from zero',
+        )
 
     def _refuse(self, kind, why):
         self.refused[kind] += 1
@@ -439,29 +458,40 @@ class EffortGuard:
         elif not scale:
             return True
         return len(scale) == len(command) and all(
-            abs(effort) <= NEAR * most for effort, most in zip(command, scale, strict=True))
+            abs(effort) <= NEAR * most for effort, most in zip(command, scale, strict=True)
+        )
 
     def _distance(self, command):
         return [abs(effort - last) for effort, last in zip(command, self.output, strict=True)]
 
     def _rates(self):
         return self.settings.rate_limits or [
-            most / self.settings.stop_ramp for most in self._scale()]
+            most / self.settings.stop_ramp for most in self._scale()
+        ]
 
     def _is_one_step(self, command):
-        return all(distance <= rate * LONGEST_STEP for distance, rate in zip(
-            self._distance(command), self._rates(), strict=True))
+        return all(
+            distance <= rate * LONGEST_STEP
+            for distance, rate in zip(self._distance(command), self._rates(), strict=True)
+        )
 
     def _approach_time(self, command):
         if len(self._largest) != len(command):
             return self.settings.stop_ramp
-        times = [distance / rate if rate > 0.0 else self.settings.stop_ramp
-                 for distance, rate in zip(self._distance(command), self._rates(), strict=True)]
+        times = [
+            distance / rate if rate > 0.0 else self.settings.stop_ramp
+            for distance, rate in zip(self._distance(command), self._rates(), strict=True)
+        ]
         return min(max(times), LONGEST_FADE)
 
     def _fade_time(self):
-        longest = max((abs(effort) / rate for effort, rate in zip(
-            self.output, self.settings.rate_limits, strict=False)), default=0.0)
+        longest = max(
+            (
+                abs(effort) / rate
+                for effort, rate in zip(self.output, self.settings.rate_limits, strict=False)
+            ),
+            default=0.0,
+        )
         return min(max(self.settings.stop_ramp, longest), LONGEST_FADE)
 
     # Ways to zero and back -------------------------------------------------------------------
@@ -509,8 +539,10 @@ class EffortGuard:
 
     def _describe(self, silence):
         dropped = ', '.join(f'{count} {kind}' for kind, count in self._dropped.most_common())
-        return (f'no{" valid" if dropped else ""} command for {silence:.3f} s, timeout '
-                f'{self.settings.timeout:g} s' + (f' (dropped: {dropped})' if dropped else ''))
+        return (
+            f'no{" valid" if dropped else ""} command for {silence:.3f} s, timeout '
+            f'{self.settings.timeout:g} s' + (f' (dropped: {dropped})' if dropped else '')
+        )
 
     def _enter(self, state, reason):
         if (state, reason) == (self.state, self.reason):
@@ -523,4 +555,3 @@ class EffortGuard:
         except Exception:
             # The observer informs people; the arm must not depend on that.
             _log.exception('the observer of the guard failed')
-

@@ -69,9 +69,11 @@ class EffortLimiter:
 
     def saturation(self):
         """Return in words which joints were clamped by the last call: wanted and limit."""
-        return '; '.join(f'{name}: {wanted:.6g} limited to {limit:.6g}'
-                         for name, wanted, limit in zip(self.names, self._wanted, self._limits,
-                                                        strict=True) if abs(wanted) > limit)
+        return '; '.join(
+            f'{name}: {wanted:.6g} limited to {limit:.6g}'
+            for name, wanted, limit in zip(self.names, self._wanted, self._limits, strict=True)
+            if abs(wanted) > limit
+        )
 
     @property
     def last(self):
@@ -80,8 +82,9 @@ class EffortLimiter:
 
     def describe_last(self):
         """Return the last command in words: a joint and its effort each."""
-        return ', '.join(f'{name}: {effort:.6g}' for name, effort in zip(
-            self.names, self._last, strict=True))
+        return ', '.join(
+            f'{name}: {effort:.6g}' for name, effort in zip(self.names, self._last, strict=True)
+        )
 
     def reset(self):
         """Take zero for the last command."""
@@ -118,12 +121,14 @@ class EffortLimiter:
 
         """
         if effort.shape != (len(self._last),):
-            raise InvalidEffortError(f'expected {len(self._last)} efforts, got shape '
-                                     f'{effort.shape}')
+            raise InvalidEffortError(
+                f'expected {len(self._last)} efforts, got shape {effort.shape}'
+            )
         self.is_saturated = False
         target = []
-        for i, (value, scale, limit) in enumerate(zip(
-                effort.tolist(), self._scale, self._limits, strict=True)):
+        for i, (value, scale, limit) in enumerate(
+            zip(effort.tolist(), self._scale, self._limits, strict=True)
+        ):
             self._wanted[i] = value = value * scale
             if not abs(value) <= limit:
                 if abs(value) > limit:
@@ -163,7 +168,8 @@ class EffortLimiter:
         command = []
         is_held_back = False
         for value, last, rate, limit, at_least in zip(
-                target, self._last, self._rate_limits, self._limits, least, strict=True):
+            target, self._last, self._rate_limits, self._limits, least, strict=True
+        ):
             step = max(rate * time, at_least)
             if not last - step <= value <= last + step:
                 is_held_back = True
@@ -183,8 +189,10 @@ class EffortLimiter:
 
     def is_negligible(self, efforts):
         """Tell whether m efforts are within NEGLIGIBLE of the limits."""
-        return all(abs(effort) <= NEGLIGIBLE * limit for effort, limit in zip(
-            efforts.tolist(), self._limits, strict=True))
+        return all(
+            abs(effort) <= NEGLIGIBLE * limit
+            for effort, limit in zip(efforts.tolist(), self._limits, strict=True)
+        )
 
     def withdraw(self):
         """Take the last command back, because it was not published."""

@@ -210,8 +210,7 @@ class EffortOutput:
         waited = now - self._last_time
         if self.machine.state == OutputState.STOPPING and waited >= 0.5 * STOP_PERIOD:
             return self._fade(now)
-        if (self.machine.is_driving and waited >= 0.9 * STOP_PERIOD
-                and not self._is_settled()):
+        if self.machine.is_driving and waited >= 0.9 * STOP_PERIOD and not self._is_settled():
             return self._drive(now)
         return None
 
@@ -255,13 +254,19 @@ class EffortOutput:
         """
         if is_fault:
             self.machine.latch(reason)
-        if (may_hold and self.settings.stop_behavior == 'hold' and self.machine.is_driving
-                and self.limiter.last.any()):
-            self.machine.enter(OutputState.HOLDING, f'{reason} (stop_behavior hold: the last '
-                               'efforts stay in force; ~/enable with false releases them)')
+        if (
+            may_hold
+            and self.settings.stop_behavior == 'hold'
+            and self.machine.is_driving
+            and self.limiter.last.any()
+        ):
+            self.machine.enter(
+                OutputState.HOLDING,
+                f'{reason} (stop_behavior hold: the last '
+                'efforts stay in force; ~/enable with false releases them)',
+            )
             return
-        longest = min(MAX_FAULT_RAMP if is_fault else np.inf,
-                      np.inf if within is None else within)
+        longest = min(MAX_FAULT_RAMP if is_fault else np.inf, np.inf if within is None else within)
         if self.machine.state == OutputState.STOPPING:
             if self._ramp.remaining > longest or self._stop_within > longest:
                 self._begin_fade(now, min(self._ramp.remaining, longest), longest)
@@ -307,8 +312,7 @@ class EffortOutput:
             target = self.limiter.target(self._effort)
             if self._is_ramping:
                 target = self._on_the_ramps(now, np.array(target)).tolist()
-            command = self.limiter.step(
-                target, min(dt, MAX_PERIODS * self._period, STOP_PERIOD))
+            command = self.limiter.step(target, min(dt, MAX_PERIODS * self._period, STOP_PERIOD))
         except InvalidEffortError as error:
             self.stop(now, f'invalid effort: {error}', is_fault=True)
             return None
@@ -321,8 +325,10 @@ class EffortOutput:
         self._change.advance(now)
         progress = self._ramp.progress
         self._is_ramping = progress < 1.0 or self._change.progress < 1.0
-        return (progress * (target + self._remaining_difference())
-                + (1.0 - progress) * self._start_from)
+        return (
+            progress * (target + self._remaining_difference())
+            + (1.0 - progress) * self._start_from
+        )
 
     def _remaining_difference(self):
         return (1.0 - self._change.progress) * self._difference
@@ -330,9 +336,12 @@ class EffortOutput:
     def _is_settled(self):
         # The command is what the model wants: no ramp, no rate limit in between. Gravity may
         # change a hundred times a second: what is left of that is small, and never nothing.
-        return (self._ramp.progress == 1.0 and self._effort is not None
-                and not self.limiter.is_held_back
-                and self.limiter.is_negligible(self._remaining_difference()))
+        return (
+            self._ramp.progress == 1.0
+            and self._effort is not None
+            and not self.limiter.is_held_back
+            and self.limiter.is_negligible(self._remaining_difference())
+        )
 
     def _begin_fade(self, now, ramp, longest):
         self._ramp = _Ramp(now, ramp)
@@ -348,8 +357,9 @@ class EffortOutput:
         dt = now - self._last_time
         self._ramp.advance(now)
         # However small the rate limits are, or have become, the stop keeps its bound.
-        least = np.abs(self._stop_from) * (min(max(dt, 0.0), MAX_RAMP_STEP)
-                                           / max(self._stop_within, STOP_PERIOD))
+        least = np.abs(self._stop_from) * (
+            min(max(dt, 0.0), MAX_RAMP_STEP) / max(self._stop_within, STOP_PERIOD)
+        )
         target = (1.0 - self._ramp.progress) * self._stop_from
         try:
             command = self.limiter.step(target.tolist(), min(dt, MAX_STOP_STEP), least.tolist())
@@ -374,5 +384,9 @@ class EffortOutput:
         elif self._saturated_since is None:
             self._saturated_since = now
         elif now - self._saturated_since > LONGEST_SATURATION:
-            self.stop(now, f'effort above its limit for {LONGEST_SATURATION:g} s: '
-                           f'{self.limiter.saturation()}', is_fault=True)
+            self.stop(
+                now,
+                f'effort above its limit for {LONGEST_SATURATION:g} s: '
+                f'{self.limiter.saturation()}',
+                is_fault=True,
+            )

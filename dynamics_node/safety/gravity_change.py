@@ -60,23 +60,29 @@ class GravityChange:
         """
         gravity = np.array(gravity, dtype=float)
         if not gravity.any() or not self._accepted.any():
-            return ('expected a vector that is not zero while output is on, got '
-                    f'{self._accepted.tolist()} -> {gravity.tolist()}: disable it first, or '
-                    'leave gravity out of the command by compensate.gravity')
+            return (
+                'expected a vector that is not zero while output is on, got '
+                f'{self._accepted.tolist()} -> {gravity.tolist()}: disable it first, or '
+                'leave gravity out of the command by compensate.gravity'
+            )
         reference = self._reference_at(now)
         turn = _angle(reference, gravity)
         if turn > MAX_TURN:
-            return (f'expected a turn of at most {math.degrees(MAX_TURN):.0f} degrees at once and '
-                    f'{math.degrees(TURN_RATE):.0f} degrees per second while output is on, got '
-                    f'{math.degrees(turn):.0f} degrees: it must point to the earth (an '
-                    'accelerometer at rest shows the opposite); turn it in steps, or disable the '
-                    'output first')
+            return (
+                f'expected a turn of at most {math.degrees(MAX_TURN):.0f} degrees at once and '
+                f'{math.degrees(TURN_RATE):.0f} degrees per second while output is on, got '
+                f'{math.degrees(turn):.0f} degrees: it must point to the earth (an '
+                'accelerometer at rest shows the opposite); turn it in steps, or disable the '
+                'output first'
+            )
         change = abs(np.linalg.norm(gravity) - np.linalg.norm(reference))
         if change > MAX_CHANGE:
-            return (f'expected a size that changes by at most {MAX_CHANGE:g} m/s^2 at once and '
-                    f'{CHANGE_RATE:g} m/s^2 per second while output is on, got '
-                    f'{np.linalg.norm(reference):.4g} -> {np.linalg.norm(gravity):.4g} m/s^2: '
-                    'change it in steps, or disable the output first')
+            return (
+                f'expected a size that changes by at most {MAX_CHANGE:g} m/s^2 at once and '
+                f'{CHANGE_RATE:g} m/s^2 per second while output is on, got '
+                f'{np.linalg.norm(reference):.4g} -> {np.linalg.norm(gravity):.4g} m/s^2: '
+                'change it in steps, or disable the output first'
+            )
         return ''
 
     def accept(self, now, gravity):
@@ -95,8 +101,11 @@ class GravityChange:
         if turn <= TURN_RATE * dt:
             return size * end
         share = TURN_RATE * dt / turn  # along the great circle; turn is below MAX_TURN
-        return size * (math.sin((1.0 - share) * turn) * start
-                       + math.sin(share * turn) * end) / math.sin(turn)
+        return (
+            size
+            * (math.sin((1.0 - share) * turn) * start + math.sin(share * turn) * end)
+            / math.sin(turn)
+        )
 
 
 def _angle(a, b):

@@ -101,8 +101,11 @@ class JointStateBuffer:
         """
         if not clock:
             self.rejected['no clock'] += 1
-            raise RejectedStateError('no clock', 'use_sim_time is true, but nothing has come on '
-                                     '/clock yet: start the simulation, or set it to false')
+            raise RejectedStateError(
+                'no clock',
+                'use_sim_time is true, but nothing has come on '
+                '/clock yet: start the simulation, or set it to false',
+            )
         back, self._clock = (self._clock - clock) * 1e-9, clock
         if back <= self.tolerance.seconds:
             return 0.0
@@ -157,11 +160,14 @@ class JointStateBuffer:
         if names != self._known_names:
             self._learn(names)
         if len(positions) != len(names):
-            raise RejectedStateError('length', f'expected {len(names)} positions for '
-                                     f'{len(names)} names, got {len(positions)}')
+            raise RejectedStateError(
+                'length',
+                f'expected {len(names)} positions for {len(names)} names, got {len(positions)}',
+            )
         if len(velocities) not in (0, len(names)):
-            raise RejectedStateError('length', f'expected {len(names)} velocities or none, '
-                                     f'got {len(velocities)}')
+            raise RejectedStateError(
+                'length', f'expected {len(names)} velocities or none, got {len(velocities)}'
+            )
         pairs, is_complete = self._pairs, self._has_all_needed
         if not all(map(math.isfinite, positions)):
             pairs, is_complete = self._finite_pairs(positions), False
@@ -182,8 +188,11 @@ class JointStateBuffer:
             time[target] = measured
             stamps[target] = stamp
         self._newest_stamp = max(stamp, self._newest_stamp)
-        self._oldest = measured if is_complete else min(
-            (self._time[i] for i in self._needed), default=-math.inf)
+        self._oldest = (
+            measured
+            if is_complete
+            else min((self._time[i] for i in self._needed), default=-math.inf)
+        )
 
     def _take_efforts(self, efforts, count):
         effort = self._effort
@@ -205,8 +214,10 @@ class JointStateBuffer:
             return
         kind = 'repeated' if stamp == last else 'going back'
         raise RejectedStateError(
-            'old stamp', f'expected a newer stamp than the last one, got one that is {kind} by '
-            f'{(last - stamp) * 1e-9:.3f} s: does a bag loop, or do two nodes publish?')
+            'old stamp',
+            f'expected a newer stamp than the last one, got one that is {kind} by '
+            f'{(last - stamp) * 1e-9:.3f} s: does a bag loop, or do two nodes publish?',
+        )
 
     def _check_steps(self, now, positions, stamp):
         small, position = self.limits.small_steps, self._position
@@ -224,8 +235,10 @@ class JointStateBuffer:
             self._jumped(joint, position, dt)
 
     def _jumped(self, joint, position, dt):
-        text = ('expected a position that the joint can have reached, got '
-                + self.limits.describe_jump(joint, self._position[joint], position, dt))
+        text = (
+            'expected a position that the joint can have reached, got '
+            + self.limits.describe_jump(joint, self._position[joint], position, dt)
+        )
         self._jumps += 1
         self._jumped_joint = joint
         if self._jumps < MAX_JUMPS:
@@ -250,12 +263,13 @@ class JointStateBuffer:
         self._newest_stamp = 0
 
     def _finite_pairs(self, positions):
-        wrong = {target for source, target in self._pairs
-                 if not math.isfinite(positions[source])}
+        wrong = {target for source, target in self._pairs if not math.isfinite(positions[source])}
         missing = [self._names[i] for _, i in self._pairs if i in wrong and i in self._needed]
         if missing:
-            raise RejectedStateError('not finite', 'expected finite positions, got NaN or '
-                                     f'infinity for {", ".join(missing)}')
+            raise RejectedStateError(
+                'not finite',
+                f'expected finite positions, got NaN or infinity for {", ".join(missing)}',
+            )
         return [(source, target) for source, target in self._pairs if target not in wrong]
 
     def _learn(self, names):
@@ -265,10 +279,13 @@ class JointStateBuffer:
         if len(set(names)) != len(names):
             twice = sorted(name for name, count in Counter(names).items() if count > 1)
             # Anybody may have written them: short, and without what a terminal would obey.
-            raise RejectedStateError('name twice', 'expected each joint once, got twice: '
-                                     + ', '.join(map(quoted, twice[:5])))
-        self._pairs = [(i, self._index[name]) for i, name in enumerate(names)
-                       if name in self._index]
+            raise RejectedStateError(
+                'name twice',
+                'expected each joint once, got twice: ' + ', '.join(map(quoted, twice[:5])),
+            )
+        self._pairs = [
+            (i, self._index[name]) for i, name in enumerate(names) if name in self._index
+        ]
         needed = set(self._needed)
         self._needed_pairs = [pair for pair in self._pairs if pair[1] in needed]
         self._has_all_needed = bool(needed) and len(self._needed_pairs) == len(needed)
@@ -361,8 +378,11 @@ class JointStateBuffer:
         list of str
 
         """
-        return [self._names[i] for i in (self._needed if joints is None else joints)
-                if now - self._time[i] > timeout]
+        return [
+            self._names[i]
+            for i in (self._needed if joints is None else joints)
+            if now - self._time[i] > timeout
+        ]
 
 
 def too_many_names(count):

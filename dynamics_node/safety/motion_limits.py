@@ -45,9 +45,11 @@ class MotionLimits:
         self._allowed = [math.inf if math.isnan(limit) else float(limit) for limit in allowed]
         # A limit that is allowed above the URDF's says that the joint can be that fast.
         self._velocity = [
-            allowed if math.isnan(limit) else max(float(limit), allowed if allowed < math.inf
-                                                  else 0.0)
-            for limit, allowed in zip(velocity, self._allowed, strict=True)]
+            allowed
+            if math.isnan(limit)
+            else max(float(limit), allowed if allowed < math.inf else 0.0)
+            for limit, allowed in zip(velocity, self._allowed, strict=True)
+        ]
         self._fastest = [JUMP_MARGIN * limit for limit in self._velocity]
         self.small_steps = [limit * SHORTEST_STEP for limit in self._fastest]
         self._lower = [float(low) for low, _ in position]
@@ -81,13 +83,18 @@ class MotionLimits:
         step = after - before
         if -reach <= step <= reach:
             return False
-        return not (self._is_continuous[joint] and math.isfinite(step)
-                    and abs(math.remainder(step, 2.0 * math.pi)) <= reach)
+        return not (
+            self._is_continuous[joint]
+            and math.isfinite(step)
+            and abs(math.remainder(step, 2.0 * math.pi)) <= reach
+        )
 
     def describe_jump(self, joint, before, after, dt):
         """Return in words how far a joint has jumped, and how far it can have moved."""
-        return (f'{self.names[joint]} from {before:.4g} to {after:.4g} within {dt:.3f} s, at a '
-                f'velocity limit of {self._velocity[joint]:g}')
+        return (
+            f'{self.names[joint]} from {before:.4g} to {after:.4g} within {dt:.3f} s, at a '
+            f'velocity limit of {self._velocity[joint]:g}'
+        )
 
     def runaway(self, joints, velocity):
         """
@@ -110,8 +117,9 @@ class MotionLimits:
         fast = [i for i in joints if abs(velocity[i]) > allowed[i]]
         if not fast:
             return ''
-        return ', '.join(f'{self.names[i]} at {velocity[i]:.4g} (limit {allowed[i]:g})'
-                         for i in fast)
+        return ', '.join(
+            f'{self.names[i]} at {velocity[i]:.4g} (limit {allowed[i]:g})' for i in fast
+        )
 
     def outside(self, joints, position):
         """
@@ -134,5 +142,7 @@ class MotionLimits:
         beyond = [i for i in joints if not lower[i] <= position[i] <= upper[i]]
         if not beyond:
             return ''
-        return ', '.join(f'{self.names[i]} at {position[i]:.6g} (limits {lower[i]:g} to '
-                         f'{upper[i]:g})' for i in beyond)
+        return ', '.join(
+            f'{self.names[i]} at {position[i]:.6g} (limits {lower[i]:g} to {upper[i]:g})'
+            for i in beyond
+        )

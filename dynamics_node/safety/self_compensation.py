@@ -31,5 +31,8 @@ def self_compensating(plugins):
         'plugin (arm)' each; empty if there is none.
 
     """
-    return [f'{plugin} ({SELF_COMPENSATING[package]})' for plugin in plugins
-            if (package := re.split('/|::', plugin, maxsplit=1)[0]) in SELF_COMPENSATING]
+    return [
+        f'{plugin} ({SELF_COMPENSATING[package]})'
+        for plugin in plugins
+        if (package := re.split('/|::', plugin, maxsplit=1)[0]) in SELF_COMPENSATING
+    ]

@@ -52,9 +52,11 @@ class StampTolerance:
             return
         side = 'old' if late > 0 else 'in the future'
         raise RejectedStateError(
-            'stamp', f'expected a stamp within {self.seconds:g} s of the clock, got one '
+            'stamp',
+            f'expected a stamp within {self.seconds:g} s of the clock, got one '
             f'{abs(late) * 1e-9:.3f} s {side}: synchronise the clocks of both machines, and '
-            'set use_sim_time on both sides or on neither')
+            'set use_sim_time on both sides or on neither',
+        )
 
     def is_ahead(self, stamp, clock):
         """Tell whether a stamp that was accepted once lies in the future of the clock by now."""

@@ -149,8 +149,9 @@ class TorquePath:
 
     # --------------------------------------------------------------- joint states and ticks
 
-    def process_joint_state(self, now, names, positions, velocities=(), stamp=0, clock=0,
-                            efforts=()):
+    def process_joint_state(
+        self, now, names, positions, velocities=(), stamp=0, clock=0, efforts=()
+    ):
         """
         Take a joint state; return the command that follows from it.
 
@@ -208,11 +209,17 @@ class TorquePath:
             return
         timeout = self.output.settings.state_timeout
         if now - before > timeout:
-            self.fault(now, f'the node itself stood still for {now - before:.3f} s, limit '
-                            f'{timeout:.3f} s: is the computer overloaded, or was it stopped?')
+            self.fault(
+                now,
+                f'the node itself stood still for {now - before:.3f} s, limit '
+                f'{timeout:.3f} s: is the computer overloaded, or was it stopped?',
+            )
         elif now - self._last_monitored > MAX_MONITOR_AGE:
-            self.fault(now, 'the search for other publishers and controllers has not run for '
-                            f'{now - self._last_monitored:.1f} s')
+            self.fault(
+                now,
+                'the search for other publishers and controllers has not run for '
+                f'{now - self._last_monitored:.1f} s',
+            )
         elif now - self._last_tick > timeout + MAX_MONITOR_AGE:
             self.fault(now, f'the watchdog has not run for {now - self._last_tick:.1f} s')
 
@@ -234,8 +241,10 @@ class TorquePath:
         if late <= self.output.settings.state_timeout:
             return True
         self.output.limiter.withdraw()
-        self.fault(now, f'the node itself stood still for {late:.3f} s between a joint state and '
-                        'its command')
+        self.fault(
+            now,
+            f'the node itself stood still for {late:.3f} s between a joint state and its command',
+        )
         return False
 
     def published(self, now):
@@ -278,8 +287,12 @@ class TorquePath:
         """
         age, timeout = self.buffer.age(now), self.output.settings.state_timeout
         if self.is_driving and age > timeout:
-            self.output.stop(now, f'joint_states stale: last {age:.3f} s ago, limit '
-                                  f'{timeout:.3f} s', is_fault=True, may_hold=True)
+            self.output.stop(
+                now,
+                f'joint_states stale: last {age:.3f} s ago, limit {timeout:.3f} s',
+                is_fault=True,
+                may_hold=True,
+            )
         self._last_look = self._last_tick = now
         return self.output.between(now)
 
@@ -388,8 +401,9 @@ class TorquePath:
         """
         if self.is_on:
             left = self.output.limiter.describe_last()
-            self.output.abandon(f'{reason}; the last efforts sent, which the hardware may hold: '
-                                f'{left}')
+            self.output.abandon(
+                f'{reason}; the last efforts sent, which the hardware may hold: {left}'
+            )
 
     def close(self, now, reason, within):
         """

@@ -10,5 +10,14 @@ from .description import Inertial, Joint, Link, Mimic, RobotDescription, Stated
 from .examination import Examination
 from .read import examine_urdf, read_urdf
 
-__all__ = ['Examination', 'Inertial', 'Joint', 'Link', 'Mimic', 'RobotDescription', 'Stated',
-           'examine_urdf', 'read_urdf']
+__all__ = [
+    'Examination',
+    'Inertial',
+    'Joint',
+    'Link',
+    'Mimic',
+    'RobotDescription',
+    'Stated',
+    'examine_urdf',
+    'read_urdf',
+]

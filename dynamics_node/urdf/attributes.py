@@ -76,8 +76,11 @@ def number_problems(robot):
         where = f'link {quoted(link.get("name"))}'
         problems += _in_element(link, where, _LINK_NUMBERS)
         if link.find('inertial') is not None:
-            problems += [f'{where}: <inertial> has no <{part.split("/")[1]}>'
-                         for part in _INERTIAL_PARTS if link.find(part) is None]
+            problems += [
+                f'{where}: <inertial> has no <{part.split("/")[1]}>'
+                for part in _INERTIAL_PARTS
+                if link.find(part) is None
+            ]
     for joint in robot.findall('joint'):
         where = f'joint {quoted(joint.get("name"))}'
         problems += _in_element(joint, where, _JOINT_NUMBERS)
@@ -88,10 +91,13 @@ def number_problems(robot):
 def _soft_limits(joint, where):
     limit = joint.find('limit')
     given = {} if limit is None else limit.attrib
-    return [f'{where}: <limit> {name}: expected a number, got {_shown(given[name])}'
-            for name in ('effort', 'velocity')
-            if name in given and not is_number(given[name]) and not _UNLIMITED.fullmatch(
-                given[name].strip(_BLANKS))]
+    return [
+        f'{where}: <limit> {name}: expected a number, got {_shown(given[name])}'
+        for name in ('effort', 'velocity')
+        if name in given
+        and not is_number(given[name])
+        and not _UNLIMITED.fullmatch(given[name].strip(_BLANKS))
+    ]
 
 
 def _in_element(parent, where, table):
@@ -101,8 +107,9 @@ def _in_element(parent, where, table):
         if element is None:
             continue
         for name, count, required in attributes:
-            problems += _in_attribute(element, f'{where}: <{element.tag}> {name}', name, count,
-                                      required)
+            problems += _in_attribute(
+                element, f'{where}: <{element.tag}> {name}', name, count, required
+            )
     return problems
 
 

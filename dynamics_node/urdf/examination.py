@@ -67,8 +67,9 @@ def sound_parts(robot):
         sound.append(element)
     children: set = set()
     for joint in sound.findall('joint'):
-        parent, child = (end.get('link') for tag in ('parent', 'child')
-                         for end in joint.findall(tag))
+        parent, child = (
+            end.get('link') for tag in ('parent', 'child') for end in joint.findall(tag)
+        )
         if parent not in known['link'] or child not in known['link'] or child in children:
             sound.remove(joint)
         children.add(child)

@@ -50,15 +50,18 @@ def check_text(text):
         _refuse(f'it is not UTF-8 text: byte {error.start}: {error.reason}')
     declared = re.match(rb'\s*<\?xml[^>]*encoding\s*=\s*["\']([^"\']+)', text)
     if declared and declared[1].lower() not in (b'utf-8', b'us-ascii', b'ascii'):
-        _refuse(f'its encoding is {quoted(declared[1].decode())}, expected UTF-8: '
-                'save it as UTF-8')
+        _refuse(
+            f'its encoding is {quoted(declared[1].decode())}, expected UTF-8: save it as UTF-8'
+        )
     try:
         _Scan().run(text)
     except _RefusedError as error:
         _refuse(str(error))
     except expat.ExpatError as error:
-        _refuse(f'it is not XML: {expat.ErrorString(error.code)}, '
-                f'line {error.lineno}, column {error.offset}')
+        _refuse(
+            f'it is not XML: {expat.ErrorString(error.code)}, '
+            f'line {error.lineno}, column {error.offset}'
+        )
 
 
 class _Scan:
@@ -78,8 +81,10 @@ class _Scan:
     def _start(self, tag, attributes):
         self.depth += 1
         if self.depth == 1 and tag != 'robot':
-            raise _RefusedError(f'its root element is <{quoted(tag)[1:-1]}>, expected <robot>; '
-                                'a xacro file must be expanded first')
+            raise _RefusedError(
+                f'its root element is <{quoted(tag)[1:-1]}>, expected <robot>; '
+                'a xacro file must be expanded first'
+            )
         if self.depth > MAX_DEPTH:
             raise _RefusedError(f'its elements are nested more than {MAX_DEPTH} deep')
         if self.depth == 2 and tag in self.counts:

@@ -55,8 +55,10 @@ def inertial_findings(name, inertial, is_moved):
         problems.append(f"link '{name}': mass is {inertial.mass:.6g} kg, must be >= 0")
     tolerance = rounding_of(link_pseudo_inertia(inertial))
     principal = np.linalg.eigvalsh(inertial.tensor)
-    findings = [f"link '{name}': inertia is not physical: {violation}"
-                for violation in tensor_violations(principal, tolerance)]
+    findings = [
+        f"link '{name}': inertia is not physical: {violation}"
+        for violation in tensor_violations(principal, tolerance)
+    ]
     if principal[0] < -tolerance and is_moved:
         return problems + findings, warnings
     return problems, warnings + findings

@@ -25,9 +25,29 @@ _PARTS = {
     'inertial': {'origin', 'mass', 'inertia'},
     'joint': {'parent', 'child', 'origin', 'axis', 'limit', 'dynamics', 'mimic'},
 }
-_ATTRIBUTES = {'name', 'type', 'link', 'joint', 'xyz', 'rpy', 'value', 'ixx', 'ixy', 'ixz', 'iyy',
-               'iyz', 'izz', 'lower', 'upper', 'effort', 'velocity', 'damping', 'friction',
-               'multiplier', 'offset'}
+_ATTRIBUTES = {
+    'name',
+    'type',
+    'link',
+    'joint',
+    'xyz',
+    'rpy',
+    'value',
+    'ixx',
+    'ixy',
+    'ixz',
+    'iyy',
+    'iyz',
+    'izz',
+    'lower',
+    'upper',
+    'effort',
+    'velocity',
+    'damping',
+    'friction',
+    'multiplier',
+    'offset',
+}
 
 
 def read_urdf(source):
@@ -77,8 +97,10 @@ def examine_urdf(source):
 
     """
     robot, name = _element(source)
-    visual, collision = ({link.get('name') for link in robot.findall('link')
-                          if link.find(tag) is not None} for tag in ('visual', 'collision'))
+    visual, collision = (
+        {link.get('name') for link in robot.findall('link') if link.find(tag) is not None}
+        for tag in ('visual', 'collision')
+    )
     plugins = _hardware_plugins(robot)
     robot = _needed(robot)
     # yourdfpy asks for one, of no use to it.
@@ -93,12 +115,18 @@ def examine_urdf(source):
     moved = moved_links(robot) if is_whole else {link.name for link in parsed.links}
     links, link_problems, link_warnings = _links(parsed.links, moved, visual | collision, visual)
     joints, joint_problems, joint_warnings = _joints(parsed.joints, stated)
-    description = RobotDescription(name, root_link(robot) if is_whole else '', tuple(links),
-                                   tuple(joints), tuple(link_warnings + joint_warnings),
-                                   plugins)
+    description = RobotDescription(
+        name,
+        root_link(robot) if is_whole else '',
+        tuple(links),
+        tuple(joints),
+        tuple(link_warnings + joint_warnings),
+        plugins,
+    )
     # Of parts, only what makes them parts: read_urdf says the rest when that is mended.
-    return Examination(description, tuple(problems or link_problems + joint_problems), is_whole,
-                       unread)
+    return Examination(
+        description, tuple(problems or link_problems + joint_problems), is_whole, unread
+    )
 
 
 def _element(source):
@@ -107,8 +135,12 @@ def _element(source):
     check_text(text)
     robot = _tree(text)
     if _has_xacro(robot):
-        raise RobotDescriptionError(['it contains xacro elements: expand it first, with '
-                                     '`xacro robot.urdf.xacro > robot.urdf`'])
+        raise RobotDescriptionError(
+            [
+                'it contains xacro elements: expand it first, with '
+                '`xacro robot.urdf.xacro > robot.urdf`'
+            ]
+        )
     return robot, robot.get('name') or 'robot'
 
 
@@ -135,16 +167,21 @@ def _has_xacro(robot):
     # Its elements are called so by a prefix, usually this one.
     prefixes = {'xacro'}
     for element in robot.iter():
-        prefixes |= {name.removeprefix('xmlns:') for name, value in element.items()
-                     if name.startswith('xmlns:') and 'xacro' in value}
-    return any(element.tag.partition(':')[0] in prefixes for element in robot.iter()
-               if ':' in element.tag)
+        prefixes |= {
+            name.removeprefix('xmlns:')
+            for name, value in element.items()
+            if name.startswith('xmlns:') and 'xacro' in value
+        }
+    return any(
+        element.tag.partition(':')[0] in prefixes for element in robot.iter() if ':' in element.tag
+    )
 
 
 def _needed(element):
     # A copy: to remove a hundred thousand elements one by one takes more than a second.
-    copy = ElementTree.Element(element.tag, {name: value for name, value in element.items()
-                                             if name in _ATTRIBUTES})
+    copy = ElementTree.Element(
+        element.tag, {name: value for name, value in element.items() if name in _ATTRIBUTES}
+    )
     parts = _PARTS.get(element.tag, ())
     copy.extend([_needed(part) for part in element if part.tag in parts])
     return copy
@@ -158,8 +195,10 @@ def _take_soft_limits(robot):
     for joint in robot.findall('joint'):
         limit = joint.find('limit')
         attributes = {} if limit is None else limit.attrib
-        stated = {name: _number_or_nan(attributes.get(name, ''))
-                  for name in ('lower', 'upper', 'effort', 'velocity')}
+        stated = {
+            name: _number_or_nan(attributes.get(name, ''))
+            for name in ('lower', 'upper', 'effort', 'velocity')
+        }
         for name in ('effort', 'velocity'):
             attributes.pop(name, '')
         # yourdfpy fills in its default axis, so this has to be seen before.
@@ -176,8 +215,11 @@ def _positive_or_nan(value):
 
 
 def _parse(robot):
-    return urdf_class().load(io.BytesIO(ElementTree.tostring(robot)), build_scene_graph=False,
-                             load_meshes=False).robot
+    return (
+        urdf_class()
+        .load(io.BytesIO(ElementTree.tostring(robot)), build_scene_graph=False, load_meshes=False)
+        .robot
+    )
 
 
 def _links(parsed, moved, shaped, visual):
@@ -185,8 +227,11 @@ def _links(parsed, moved, shaped, visual):
     for link in parsed:
         inertial = None
         if link.inertial is not None:
-            inertial = Inertial(float(link.inertial.mass), _placement(link.inertial.origin),
-                                np.array(link.inertial.inertia, dtype=float))
+            inertial = Inertial(
+                float(link.inertial.mass),
+                _placement(link.inertial.origin),
+                np.array(link.inertial.inertia, dtype=float),
+            )
             found = inertial_findings(link.name, inertial, link.name in moved)
             problems += found[0]
             warnings += found[1]
@@ -203,11 +248,23 @@ def _joints(parsed, stated):
         lower, upper = _position_limits(joint)
         friction, warning = _friction(joint)
         warnings += warning
-        joints.append(Joint(
-            joint.name, joint.type, joint.parent, joint.child, _placement(joint.origin), axis,
-            lower, upper, _positive_or_nan(stated[joint.name].effort),
-            _positive_or_nan(stated[joint.name].velocity), **friction, mimic=_mimic(joint),
-            stated=stated[joint.name]))
+        joints.append(
+            Joint(
+                joint.name,
+                joint.type,
+                joint.parent,
+                joint.child,
+                _placement(joint.origin),
+                axis,
+                lower,
+                upper,
+                _positive_or_nan(stated[joint.name].effort),
+                _positive_or_nan(stated[joint.name].velocity),
+                **friction,
+                mimic=_mimic(joint),
+                stated=stated[joint.name],
+            )
+        )
     return joints, problems, warnings
 
 
@@ -235,8 +292,10 @@ def _position_limits(joint):
     upper = 0.0 if limit.upper is None else limit.upper
     if not lower < upper:
         return -math.inf, math.inf
-    return (lower if abs(lower) <= LARGEST else -math.inf,
-            upper if abs(upper) <= LARGEST else math.inf)
+    return (
+        lower if abs(lower) <= LARGEST else -math.inf,
+        upper if abs(upper) <= LARGEST else math.inf,
+    )
 
 
 def _friction(joint):
@@ -246,8 +305,7 @@ def _friction(joint):
         text = None if joint.dynamics is None else getattr(joint.dynamics, name)
         value = 0.0 if text is None else float(text)
         if value < 0.0:
-            warnings.append(f"joint '{joint.name}': {name} is {value:g}, must be >= 0: "
-                            '0 is used')
+            warnings.append(f"joint '{joint.name}': {name} is {value:g}, must be >= 0: 0 is used")
         values[name] = max(value, 0.0)
     return values, warnings
 

@@ -31,8 +31,7 @@ def load_text(source):
     if isinstance(source, os.PathLike):
         return _read(Path(source))
     if not isinstance(source, str):
-        raise RobotDescriptionError(
-            [f'expected URDF text or a path, got {type(source).__name__}'])
+        raise RobotDescriptionError([f'expected URDF text or a path, got {type(source).__name__}'])
     if not source.strip():
         raise RobotDescriptionError(['it is empty: expected URDF text or a path'])
     if '<' in source or '\n' in source:

@@ -50,16 +50,20 @@ def part_problems(element):
     if element.tag == 'joint':
         ends = {end.get('link') for tag in ('parent', 'child') for end in element.findall(tag)}
         problems += _joint_problems(element, ends)
-        problems += [f'joint {quoted(element.get("name"))}: <mimic> names no joint'
-                     for mimic in element.findall('mimic') if not mimic.get('joint')]
+        problems += [
+            f'joint {quoted(element.get("name"))}: <mimic> names no joint'
+            for mimic in element.findall('mimic')
+            if not mimic.get('joint')
+        ]
     return problems
 
 
 def root_link(robot):
     """Return the name of the link that is no joint's child; the structure must be sound."""
     children = {joint.find('child').get('link') for joint in robot.findall('joint')}
-    return next(link.get('name') for link in robot.findall('link')
-                if link.get('name') not in children)
+    return next(
+        link.get('name') for link in robot.findall('link') if link.get('name') not in children
+    )
 
 
 def moved_links(robot):
@@ -69,8 +73,7 @@ def moved_links(robot):
     for name in joint_of:
         # Up to a joint that moves, to a link whose answer is known, or to the root.
         path, link = [], name
-        while (link in joint_of and link not in is_moved
-               and joint_of[link].get('type') == 'fixed'):
+        while link in joint_of and link not in is_moved and joint_of[link].get('type') == 'fixed':
             path.append(link)
             link = joint_of[link].find('parent').get('link')
         answer = is_moved.get(link, link in joint_of)
@@ -81,12 +84,22 @@ def moved_links(robot):
 def _naming_problems(kind, names):
     problems = [f'a <{kind}> has no name' for name in names if not name]
     counts = Counter(name for name in names if name)
-    problems += [f'{kind} {quoted(name)} is defined {count} times'
-                 for name, count in counts.items() if count > 1]
-    problems += [f'{kind} {quoted(name)}: its name has {len(name)} characters, at most '
-                 f'{MAX_NAME} are accepted' for name in counts if len(name) > MAX_NAME]
-    problems += [f'{kind} {quoted(name)}: its name has characters that cannot be printed'
-                 for name in counts if not name.isprintable()]
+    problems += [
+        f'{kind} {quoted(name)} is defined {count} times'
+        for name, count in counts.items()
+        if count > 1
+    ]
+    problems += [
+        f'{kind} {quoted(name)}: its name has {len(name)} characters, at most '
+        f'{MAX_NAME} are accepted'
+        for name in counts
+        if len(name) > MAX_NAME
+    ]
+    problems += [
+        f'{kind} {quoted(name)}: its name has characters that cannot be printed'
+        for name in counts
+        if not name.isprintable()
+    ]
     return problems
 
 
@@ -94,11 +107,16 @@ def _repetition_problems(element):
     # Of two, each parser may take another one.
     where = f'{element.tag} {quoted(element.get("name"))}'
     problems = []
-    for owner, parent in ((where, element), *((f'{where}: <inertial>', inertial)
-                                              for inertial in element.findall('inertial'))):
+    for owner, parent in (
+        (where, element),
+        *((f'{where}: <inertial>', inertial) for inertial in element.findall('inertial')),
+    ):
         counts = Counter(part.tag for part in parent)
-        problems += [f'{owner} has {count} <{tag}>, expected one'
-                     for tag, count in counts.items() if count > 1]
+        problems += [
+            f'{owner} has {count} <{tag}>, expected one'
+            for tag, count in counts.items()
+            if count > 1
+        ]
     return problems
 
 
@@ -107,11 +125,13 @@ def _joint_problems(joint, links):
     problems = []
     kind = joint.get('type')
     if kind in UNSUPPORTED_TYPES:
-        problems.append(f'{where}: type {kind} is not supported; use one of '
-                        f'{", ".join(SUPPORTED_TYPES)}')
+        problems.append(
+            f'{where}: type {kind} is not supported; use one of {", ".join(SUPPORTED_TYPES)}'
+        )
     elif kind not in SUPPORTED_TYPES:
-        problems.append(f'{where}: type {quoted(kind)} is unknown; use one of '
-                        f'{", ".join(SUPPORTED_TYPES)}')
+        problems.append(
+            f'{where}: type {quoted(kind)} is unknown; use one of {", ".join(SUPPORTED_TYPES)}'
+        )
     for end in ('parent', 'child'):
         element = joint.find(end)
         name = None if element is None else element.get('link')
@@ -123,16 +143,21 @@ def _joint_problems(joint, links):
 
 
 def _tree_problems(links, joints):
-    parents = [(joint.get('name'), joint.find('parent').get('link'),
-                joint.find('child').get('link')) for joint in joints]
-    problems = [f'link {quoted(name)} is the child of {count} joints, must be of one'
-                for name, count in Counter(child for _, _, child in parents).items()
-                if count > 1]
+    parents = [
+        (joint.get('name'), joint.find('parent').get('link'), joint.find('child').get('link'))
+        for joint in joints
+    ]
+    problems = [
+        f'link {quoted(name)} is the child of {count} joints, must be of one'
+        for name, count in Counter(child for _, _, child in parents).items()
+        if count > 1
+    ]
     parent_of = {child: parent for _, parent, child in parents}
     roots = [name for name in links if name not in parent_of]
     if len(roots) > 1:
-        problems.append(f'it has {len(roots)} root links, must be one: '
-                        + ', '.join(map(quoted, roots)))
+        problems.append(
+            f'it has {len(roots)} root links, must be one: ' + ', '.join(map(quoted, roots))
+        )
     cycle = _cycle(parent_of)
     if cycle:
         problems.append('its links form a cycle: ' + ' -> '.join(map(quoted, cycle)))
@@ -149,8 +174,9 @@ def _mimic_problems(joints):
             continue
         name, leader = joint.get('name'), mimic.get('joint')
         if leader not in movable:
-            problems.append(f'joint {quoted(name)}: mimics {quoted(leader)}, which is not a '
-                            'movable joint')
+            problems.append(
+                f'joint {quoted(name)}: mimics {quoted(leader)}, which is not a movable joint'
+            )
         else:
             leader_of[name] = leader
     cycle = _cycle(leader_of)
@@ -170,5 +196,5 @@ def _cycle(next_of):
             path.append(name)
             name = next_of[name]
         if name in path:
-            return [*path[path.index(name):], name]
+            return [*path[path.index(name) :], name]
     return []

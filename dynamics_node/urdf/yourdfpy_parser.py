@@ -35,6 +35,7 @@ def urdf_class():
             # Another version of yourdfpy, made up differently: the whole of it will do.
             sys.modules.pop(_PARSER, None)
     from yourdfpy import URDF
+
     return URDF
 
 
@@ -45,6 +46,7 @@ def _parser_alone():
         if name in ('trimesh', 'trimesh.transformations'):
             return trimesh
         return builtins.__import__(name, *arguments, **options)
+
     spec = importlib.util.spec_from_file_location(_PARSER, _folder('yourdfpy') / 'urdf.py')
     if spec is None or spec.loader is None:
         raise ImportError(f'expected a file urdf.py in {_folder("yourdfpy")}')

@@ -35,8 +35,9 @@ def read(page):
     section = page.split('### D, C and G\n')[1].split('\n###')[0]
     heading, _, *lines = re.findall(r'^\|(.*)\|$', section, re.M)
     names = [cell.strip() for cell in heading.split('|')]
-    columns = [place for place, name in enumerate(names)
-               if name not in ('library', 'gives', 'ratio')]
+    columns = [
+        place for place, name in enumerate(names) if name not in ('library', 'gives', 'ratio')
+    ]
     times, complete = {}, set()
     for line in lines:
         cells = [cell.strip() for cell in line.split('|')]
@@ -69,22 +70,39 @@ def draw(page, path):
         ends = min(times[name]), max(times[name])
         axis.plot(ends, [row, row], color='#c9cdd3', lw=2, zorder=1)
     for place, (robot, color) in enumerate(zip(robots, COLORS, strict=True)):
-        axis.scatter([times[name][place] for name in libraries], range(len(libraries)), s=42,
-                     color=color, label=robot, zorder=2)
+        axis.scatter(
+            [times[name][place] for name in libraries],
+            range(len(libraries)),
+            s=42,
+            color=color,
+            label=robot,
+            zorder=2,
+        )
     for row, name in enumerate(libraries):
         low, high = min(times[name]), max(times[name])
-        axis.annotate(f'{low:.2g} to {high:.2g}', (high, row), (9, 0), va='center',
-                      textcoords='offset points', fontsize=9)
-    axis.set_yticks(range(len(libraries)),
-                    [name if name in complete else f'{name} *' for name in libraries], fontsize=10)
+        axis.annotate(
+            f'{low:.2g} to {high:.2g}',
+            (high, row),
+            (9, 0),
+            va='center',
+            textcoords='offset points',
+            fontsize=9,
+        )
+    axis.set_yticks(
+        range(len(libraries)),
+        [name if name in complete else f'{name} *' for name in libraries],
+        fontsize=10,
+    )
     for label in axis.get_yticklabels():
         label.set_fontweight('bold' if label.get_text().startswith(OURS) else 'normal')
     axis.set_xscale('log')
     axis.set_xlim(0.25, 70.0)
     axis.set_xticks([0.3, 1.0, 3.0, 10.0, 30.0], ['0.3', '1', '3', '10', '30'])
     axis.set_xticks([], minor=True)
-    axis.set_xlabel('µs for D, C and G of one state, called from Python (* C q̇ instead of C)\n'
-                    f'{machine}', fontsize=9)
+    axis.set_xlabel(
+        f'µs for D, C and G of one state, called from Python (* C q̇ instead of C)\n{machine}',
+        fontsize=9,
+    )
     axis.grid(alpha=0.3, axis='x')
     axis.spines[['top', 'right']].set_visible(False)
     axis.legend(fontsize=9, frameon=False, loc='upper right')

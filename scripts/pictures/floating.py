@@ -14,16 +14,28 @@ PANEL = (406, 430)  # pixels of a rendered panel
 LOOKAT, DISTANCE = (0.30, 0.0, 0.40), 2.35
 
 OFF, ON, PUSHED, PAUSE = '#f6cfc7', '#d3ecd8', '#fbeabb', '#ececec'
-PHASE_COLORS = {'falls, node off': OFF, 'back to the start': PAUSE, 'ramps up': PAUSE,
-                'held by the node': ON, 'pushed': PUSHED, 'held there': ON, 'ramps down': PAUSE}
+PHASE_COLORS = {
+    'falls, node off': OFF,
+    'back to the start': PAUSE,
+    'ramps up': PAUSE,
+    'held by the node': ON,
+    'pushed': PUSHED,
+    'held there': ON,
+    'ramps down': PAUSE,
+}
 LINE_COLORS = ['#1f4e9e', '#d1495b', '#2e9e6b', '#e08e1b', '#7a4fb5', '#2aa7b8', '#8c5a3c']
 GHOSTS = 4
 MOVIE_SIZE, MOVIE_RATE = (560, 400), 12  # pixels, pictures per second
 # Shown so many times faster: nothing happens while the arm is held.
 HASTE = {'held by the node': 5.0, 'back to the start': 2.0, 'held there': 1.5}
-MOVIE_WORDS = {'falls, node off': 'output off: it falls', 'back to the start': 'driven back',
-               'ramps up': 'output on', 'held by the node': 'output on: it floats (5 x)',
-               'pushed': 'pushed: it gives way', 'held there': 'and stays there'}
+MOVIE_WORDS = {
+    'falls, node off': 'output off: it falls',
+    'back to the start': 'driven back',
+    'ramps up': 'output on',
+    'held by the node': 'output on: it floats (5 x)',
+    'pushed': 'pushed: it gives way',
+    'held there': 'and stays there',
+}
 
 
 def draw(outcome, arm, robot, path):
@@ -44,13 +56,22 @@ def draw(outcome, arm, robot, path):
     """
     figure = Figure(figsize=(2 * WIDTH, 2 * WIDTH * 0.565), dpi=DPI)
     FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(2, 4, height_ratios=[1.3, 1.0], left=0.065, right=0.998, top=0.93,
-                               bottom=0.105, hspace=0.13, wspace=0.03)
+    grid = figure.add_gridspec(
+        2,
+        4,
+        height_ratios=[1.3, 1.0],
+        left=0.065,
+        right=0.998,
+        top=0.93,
+        bottom=0.105,
+        hspace=0.13,
+        wspace=0.03,
+    )
     renderer = ArmRenderer(robot, *PANEL, LOOKAT, DISTANCE)
     for column, (title, color, ghosts, place) in enumerate(_panels(outcome)):
         axis = figure.add_subplot(grid[0, column])
         picture = np.empty((PANEL[1], PANEL[0], 3))
-        picture[:] = [int(color[k:k + 2], 16) / 255.0 for k in (1, 3, 5)]
+        picture[:] = [int(color[k : k + 2], 16) / 255.0 for k in (1, 3, 5)]
         for position in ghosts:
             picture = over(picture, renderer.frame(_all_joints(arm, position)), 0.3)
         axis.imshow(over(picture, renderer.frame(_all_joints(arm, place))))
@@ -62,8 +83,9 @@ def draw(outcome, arm, robot, path):
     figure.savefig(path)
     # 128 colours are enough, and a third of the file.
     with Image.open(path) as picture:
-        picture.convert('RGB').quantize(128, method=Image.Quantize.MEDIANCUT,
-                                        dither=Image.Dither.NONE).save(path, optimize=True)
+        picture.convert('RGB').quantize(
+            128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE
+        ).save(path, optimize=True)
 
 
 def film(outcome, arm, robot, path):
@@ -89,15 +111,22 @@ def film(outcome, arm, robot, path):
         for time in np.arange(phase.start, phase.end, step):
             picture = np.empty((MOVIE_SIZE[1], MOVIE_SIZE[0], 3))
             color = PHASE_COLORS[phase.name]
-            picture[:] = [int(color[k:k + 2], 16) / 255.0 for k in (1, 3, 5)]
+            picture[:] = [int(color[k : k + 2], 16) / 255.0 for k in (1, 3, 5)]
             place = positions[np.searchsorted(times, time)]
             picture = over(picture, renderer.frame(_all_joints(arm, place)))
             image = Image.fromarray(np.round(255.0 * picture).astype(np.uint8))
             ImageDraw.Draw(image).text((16, 12), MOVIE_WORDS[phase.name], '#22262d', font)
             pictures.append(image)
     renderer.close()
-    pictures[0].save(path, save_all=True, append_images=pictures[1:], loop=0,
-                     duration=round(1000 / MOVIE_RATE), quality=60, method=6)
+    pictures[0].save(
+        path,
+        save_all=True,
+        append_images=pictures[1:],
+        loop=0,
+        duration=round(1000 / MOVIE_RATE),
+        quality=60,
+        method=6,
+    )
 
 
 def _panels(outcome):
@@ -105,13 +134,26 @@ def _panels(outcome):
     fall, push = (_phase(outcome, name) for name in ('falls, node off', 'pushed'))
     watched = _phase(outcome, 'held there')
     return [
-        (f'output off: falls {outcome.largest(outcome.fall):.0f}{DEGREE} in 1 s', OFF,
-         _on_the_way(outcome, fall), outcome.poses['after the fall']),
+        (
+            f'output off: falls {outcome.largest(outcome.fall):.0f}{DEGREE} in 1 s',
+            OFF,
+            _on_the_way(outcome, fall),
+            outcome.poses['after the fall'],
+        ),
         (f'output on: held for {outcome.hold:.0f} s', ON, [], outcome.poses['held']),
-        (f'pushed by {outcome.largest(outcome.pushed):.0f}{DEGREE}: gives way', PUSHED,
-         _on_the_way(outcome, push), _at(outcome, push.end)),
-        (f'let go: stays for {watched.end - watched.start:.0f} s', ON, [],
-         outcome.poses['after the push'])]
+        (
+            f'pushed by {outcome.largest(outcome.pushed):.0f}{DEGREE}: gives way',
+            PUSHED,
+            _on_the_way(outcome, push),
+            _at(outcome, push.end),
+        ),
+        (
+            f'let go: stays for {watched.end - watched.start:.0f} s',
+            ON,
+            [],
+            outcome.poses['after the push'],
+        ),
+    ]
 
 
 def _plot(axis, outcome):
@@ -124,24 +166,42 @@ def _plot(axis, outcome):
     for phase in recording.phases:
         axis.axvspan(phase.start - start, phase.end - start, color=PHASE_COLORS[phase.name], lw=0)
     for color, row in zip(LINE_COLORS, moved):
-        axis.plot(times, way[:, row], lw=1.6, color=color,
-                  label=recording.names[row].replace('_', ' '))
-    middle = {name: (_phase(outcome, name).start + _phase(outcome, name).end) / 2 - start
-              for name in ('held by the node', 'pushed', 'held there')}
+        axis.plot(
+            times, way[:, row], lw=1.6, color=color, label=recording.names[row].replace('_', ' ')
+        )
+    middle = {
+        name: (_phase(outcome, name).start + _phase(outcome, name).end) / 2 - start
+        for name in ('held by the node', 'pushed', 'held there')
+    }
     drifts = (outcome.largest(outcome.drift), outcome.largest(outcome.drift_after_push))
-    for name, words in (('held by the node', f'held: drift {_small(drifts[0])}'),
-                        ('pushed', 'pushed'), ('held there', f'drift {_small(drifts[1])}')):
-        axis.text(middle[name], 0.965, words, fontsize=8.5, ha='center', va='top',
-                  transform=axis.get_xaxis_transform())
+    for name, words in (
+        ('held by the node', f'held: drift {_small(drifts[0])}'),
+        ('pushed', 'pushed'),
+        ('held there', f'drift {_small(drifts[1])}'),
+    ):
+        axis.text(
+            middle[name],
+            0.965,
+            words,
+            fontsize=8.5,
+            ha='center',
+            va='top',
+            transform=axis.get_xaxis_transform(),
+        )
     end = recording.phases[-1].end - start
     axis.set(xlim=(0.0, end))
     axis.set_xlabel('time [s]', fontsize=8.5, labelpad=1)
     axis.set_ylabel(f'joints from start [{DEGREE}]', fontsize=8.5, labelpad=2)
     axis.tick_params(labelsize=8)
     held = _phase(outcome, 'held by the node')
-    axis.legend(fontsize=7.5, ncols=2, frameon=False, loc='center',
-                bbox_to_anchor=((held.start + held.end) / 2 - start, 0.66),
-                bbox_transform=axis.get_xaxis_transform())
+    axis.legend(
+        fontsize=7.5,
+        ncols=2,
+        frameon=False,
+        loc='center',
+        bbox_to_anchor=((held.start + held.end) / 2 - start, 0.66),
+        bbox_transform=axis.get_xaxis_transform(),
+    )
     axis.spines[['top', 'right']].set_visible(False)
 
 
@@ -158,8 +218,7 @@ def _phase(outcome, name):
 def _at(outcome, time):
     """Return the position at a time of the recording, shape (n,) [rad or m]."""
     recording = outcome.recording
-    return recording.positions()[min(np.searchsorted(recording.times(), time),
-                                     len(recording) - 1)]
+    return recording.positions()[min(np.searchsorted(recording.times(), time), len(recording) - 1)]
 
 
 def _on_the_way(outcome, phase):

@@ -60,7 +60,8 @@ class ArmRenderer:
             raise NoOpenGLError(
                 'MuJoCo cannot render here with MUJOCO_GL='
                 f'{os.environ["MUJOCO_GL"]} ({error}); install libegl1 (then '
-                'MUJOCO_GL=egl) or libosmesa6 (then MUJOCO_GL=osmesa)') from error
+                'MUJOCO_GL=egl) or libosmesa6 (then MUJOCO_GL=osmesa)'
+            ) from error
 
     def close(self):
         """Give the OpenGL context back."""

@@ -12,9 +12,12 @@ from support.browser import browser
 SIZE = 1280, 612  # pixels: down to the end of the finding
 DRAWN_AFTER = 3.0  # s; the 3D view appears when it is ready
 # The forearm in tonnes instead of kilograms: mass and inertia.
-MISTAKES = (('<mass value="1.40208" />', '<mass value="0.00140208" />'),
-            ('ixx="0.00241145"', 'ixx="2.41145e-06"'), ('iyy="0.00241145"', 'iyy="2.41145e-06"'),
-            ('izz="0.00127592"', 'izz="1.27592e-06"'))
+MISTAKES = (
+    ('<mass value="1.40208" />', '<mass value="0.00140208" />'),
+    ('ixx="0.00241145"', 'ixx="2.41145e-06"'),
+    ('iyy="0.00241145"', 'iyy="2.41145e-06"'),
+    ('izz="0.00127592"', 'izz="1.27592e-06"'),
+)
 
 
 def draw(robot, path):
@@ -37,9 +40,13 @@ def draw(robot, path):
     with tempfile.TemporaryDirectory() as folder:
         urdf, page = Path(folder) / 'my_arm.urdf', Path(folder) / 'page.html'
         urdf.write_text(text, encoding='utf-8')
-        subprocess.run([sys.executable, '-m', 'dynamics_node.report', urdf.name, '--html',
-                        page.name], cwd=folder, check=True, stdout=subprocess.DEVNULL,
-                       stderr=subprocess.DEVNULL)
+        subprocess.run(
+            [sys.executable, '-m', 'dynamics_node.report', urdf.name, '--html', page.name],
+            cwd=folder,
+            check=True,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         with browser() as tab:
             tab.open(page, *SIZE)
             tab.settle()

@@ -38,8 +38,10 @@ def worst_by_place(robot):
     payload = robot.max_payload(q, TOOL)[0]
     reach = np.arange(0.0, x.max() + CELL, CELL)
     height = np.arange(np.floor(z.min() / CELL) * CELL, z.max() + CELL, CELL)
-    column, row = (np.floor((place - edges[0]) / CELL).astype(int)
-                   for place, edges in ((x, reach), (z, height)))
+    column, row = (
+        np.floor((place - edges[0]) / CELL).astype(int)
+        for place, edges in ((x, reach), (z, height))
+    )
     size = len(height) - 1, len(reach) - 1
     inside = (x >= 0.0) & (column < size[1]) & (row < size[0])
     cells = row[inside], column[inside]
@@ -54,8 +56,10 @@ def worst_by_place(robot):
 def postures(robot):
     """Return the positions of the grid, shape (N, n), rad or m."""
     rows = [robot.joint_names.index(name) for name in PITCHES]
-    grids = np.meshgrid(*(np.linspace(*robot.position_limits[row], count)
-                          for row, count in zip(rows, STEPS)), indexing='ij')
+    grids = np.meshgrid(
+        *(np.linspace(*robot.position_limits[row], count) for row, count in zip(rows, STEPS)),
+        indexing='ij',
+    )
     q = np.zeros((grids[0].size, len(robot.joint_names)))
     for row, grid in zip(rows, grids):
         q[:, row] = grid.ravel()
@@ -70,12 +74,13 @@ def tool_places(robot, q):
     along z, and the same for gravity along x.
 
     """
+
     def along(axis):
         gravity = np.zeros(3)
         gravity[axis] = -1.0  # m/s^2
         turned = robot.with_gravity(gravity)
-        return (turned.with_payload(TOOL, 1.0).potential_energy(q)
-                - turned.potential_energy(q))
+        return turned.with_payload(TOOL, 1.0).potential_energy(q) - turned.potential_energy(q)
+
     return along(0), along(2)
 
 
@@ -96,18 +101,38 @@ def draw(robot, path):
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2, sharey=True)
     for axis, values, colors, levels, label, title in (
-            (left, 100.0 * share, 'YlOrRd', (10, 20, 30, 40, 45), '% of the effort limit',
-             'gravity takes'),
-            (right, payload, 'YlGnBu', (5, 6, 7, 8, 9), 'kg', 'and leaves for a payload')):
+        (
+            left,
+            100.0 * share,
+            'YlOrRd',
+            (10, 20, 30, 40, 45),
+            '% of the effort limit',
+            'gravity takes',
+        ),
+        (right, payload, 'YlGnBu', (5, 6, 7, 8, 9), 'kg', 'and leaves for a payload'),
+    ):
         # At the top everything stands on the bearings: no colours for 60 kg there.
-        mesh = axis.pcolormesh(reach, height, values, cmap=colors, rasterized=True,
-                               vmin=0.8 * levels[0],
-                               vmax=levels[-1] * (1.35 if axis is right else 1.1))
-        lines = axis.contour((reach[1:] + reach[:-1]) / 2, (height[1:] + height[:-1]) / 2, values,
-                             levels, colors='#333333', linewidths=0.7)
+        mesh = axis.pcolormesh(
+            reach,
+            height,
+            values,
+            cmap=colors,
+            rasterized=True,
+            vmin=0.8 * levels[0],
+            vmax=levels[-1] * (1.35 if axis is right else 1.1),
+        )
+        lines = axis.contour(
+            (reach[1:] + reach[:-1]) / 2,
+            (height[1:] + height[:-1]) / 2,
+            values,
+            levels,
+            colors='#333333',
+            linewidths=0.7,
+        )
         axis.clabel(lines, fontsize=7.5)
-        bar = figure.colorbar(mesh, ax=axis, shrink=0.85, pad=0.02,
-                              extend='max' if axis is right else 'neither')
+        bar = figure.colorbar(
+            mesh, ax=axis, shrink=0.85, pad=0.02, extend='max' if axis is right else 'neither'
+        )
         bar.set_label(label, fontsize=9)
         bar.ax.tick_params(labelsize=8)
         axis.plot([0, 0, 0], [0.0, 0.16, 0.33], '-o', color='#22262d', lw=4, ms=5)

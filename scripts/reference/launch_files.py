@@ -32,6 +32,7 @@ def read(path):
     for call in ast.walk(tree):
         if isinstance(call, ast.Call) and getattr(call.func, 'id', '') == 'DeclareLaunchArgument':
             words = {keyword.arg: keyword.value for keyword in call.keywords}
-            arguments.append(Argument(ast.literal_eval(call.args[0]),
-                                      ast.literal_eval(words['description'])))
+            arguments.append(
+                Argument(ast.literal_eval(call.args[0]), ast.literal_eval(words['description']))
+            )
     return introduction, arguments

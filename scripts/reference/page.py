@@ -90,23 +90,45 @@ def render():
         Markdown.
 
     """
-    return '\n\n'.join([
-        HEAD,
-        '## Topics', '### Subscribed', _entries('topic', 'notes', graph.SUBSCRIBED),
-        '### Published', _entries('topic', 'when', graph.PUBLISHED),
-        EXTERNAL_TORQUE,
-        '## Services', SERVICES, _entries('service', 'answer', graph.SERVICES),
-        '## Parameters', PARAMETERS_TEXT, _parameters(PARAMETERS),
-        '## Programs and launch files', PROGRAMS, *_launch_files(),
-        'Options of the process, not parameters: `ros2 run dynamics_node dynamics_node '
-        '--no-raw-states`.', _options(), OPTIONS,
-        '## Effort guard', EFFORT_GUARD,
-        _entries('topic or service', 'what passes there', graph.EFFORT_GUARD),
-        EFFORT_GUARD_PARAMETERS, _parameters(GUARD_PARAMETERS),
-        '### Markers program', MARKERS, _entries('name', 'notes', graph.MARKERS),
-        '## Messages', *_interfaces('msg', [None]),
-        '## Service types', *_interfaces('srv', ['request', 'answer']),
-    ]) + '\n'
+    return (
+        '\n\n'.join(
+            [
+                HEAD,
+                '## Topics',
+                '### Subscribed',
+                _entries('topic', 'notes', graph.SUBSCRIBED),
+                '### Published',
+                _entries('topic', 'when', graph.PUBLISHED),
+                EXTERNAL_TORQUE,
+                '## Services',
+                SERVICES,
+                _entries('service', 'answer', graph.SERVICES),
+                '## Parameters',
+                PARAMETERS_TEXT,
+                _parameters(PARAMETERS),
+                '## Programs and launch files',
+                PROGRAMS,
+                *_launch_files(),
+                'Options of the process, not parameters: `ros2 run dynamics_node dynamics_node '
+                '--no-raw-states`.',
+                _options(),
+                OPTIONS,
+                '## Effort guard',
+                EFFORT_GUARD,
+                _entries('topic or service', 'what passes there', graph.EFFORT_GUARD),
+                EFFORT_GUARD_PARAMETERS,
+                _parameters(GUARD_PARAMETERS),
+                '### Markers program',
+                MARKERS,
+                _entries('name', 'notes', graph.MARKERS),
+                '## Messages',
+                *_interfaces('msg', [None]),
+                '## Service types',
+                *_interfaces('srv', ['request', 'answer']),
+            ]
+        )
+        + '\n'
+    )
 
 
 def _table(headings, rows):
@@ -115,8 +137,10 @@ def _table(headings, rows):
 
 
 def _entries(title, words, entries):
-    return _table([title, 'type', words],
-                  [[f'`{entry.name}`', _linked(entry.kind), entry.words] for entry in entries])
+    return _table(
+        [title, 'type', words],
+        [[f'`{entry.name}`', _linked(entry.kind), entry.words] for entry in entries],
+    )
 
 
 def _linked(kind):
@@ -149,10 +173,19 @@ def _parameters(parameters):
     rows = []
     for parameter in parameters:
         accepts = parameter.constraints()
-        notes = [parameter.description, f'Accepts {accepts}' if accepts else '',
-                 'Read-only' if parameter.read_only else '']
-        rows.append([f'`{parameter.name}`', parameter.kind, f'`{shown(parameter.default)}`',
-                     _coded('. '.join(note for note in notes if note))])
+        notes = [
+            parameter.description,
+            f'Accepts {accepts}' if accepts else '',
+            'Read-only' if parameter.read_only else '',
+        ]
+        rows.append(
+            [
+                f'`{parameter.name}`',
+                parameter.kind,
+                f'`{shown(parameter.default)}`',
+                _coded('. '.join(note for note in notes if note)),
+            ]
+        )
     return _table(['name', 'type', 'default', 'meaning'], rows)
 
 
@@ -167,15 +200,24 @@ def _launch_files():
         introduction, arguments = launch_files.read(path)
         parts.append(f'`ros2 launch dynamics_node {path.name}`: {introduction}')
         if arguments:
-            parts.append(_table(['argument', 'meaning'], [[f'`{argument.name}:=`', argument.words]
-                                                          for argument in arguments]))
+            parts.append(
+                _table(
+                    ['argument', 'meaning'],
+                    [[f'`{argument.name}:=`', argument.words] for argument in arguments],
+                )
+            )
     return parts
 
 
 def _options():
-    return _table(['option', 'meaning'], [
-        [', '.join(f'`{flag}`' for flag in action.option_strings), action.help]
-        for action in parser()._actions if action.dest != 'help'])
+    return _table(
+        ['option', 'meaning'],
+        [
+            [', '.join(f'`{flag}`' for flag in action.option_strings), action.help]
+            for action in parser()._actions
+            if action.dest != 'help'
+        ],
+    )
 
 
 def _interfaces(folder, titles):
@@ -184,7 +226,17 @@ def _interfaces(folder, titles):
         interface = interfaces.read(path)
         parts += [f'### {interface.title}', ' '.join(interface.introduction)]
         for title, fields in zip(titles, interface.parts, strict=True):
-            parts.append(_table([title or 'field', 'type', 'meaning'], [
-                [f'`{item.name}`' + (f' = {item.value}' if item.value else ''), item.kind,
-                 item.words] for item in fields]))
+            parts.append(
+                _table(
+                    [title or 'field', 'type', 'meaning'],
+                    [
+                        [
+                            f'`{item.name}`' + (f' = {item.value}' if item.value else ''),
+                            item.kind,
+                            item.words,
+                        ]
+                        for item in fields
+                    ],
+                )
+            )
     return parts

@@ -40,7 +40,7 @@ def split(page):
     """
     parts, end = [], 0
     for match in _BLOCK.finditer(page):
-        parts += [page[end:match.start()], Block(match[2], match[1] or '', match[3])]
+        parts += [page[end : match.start()], Block(match[2], match[1] or '', match[3])]
         end = match.end()
     return [*parts, page[end:]]
 

@@ -31,10 +31,14 @@ class Program:
         if words[0] != 'python':
             raise ValueError(f'expected a command that begins with python, got {command!r}')
         self._process = subprocess.Popen(
-            [sys.executable, *words[1:]], cwd=folder, stdout=subprocess.PIPE, text=True,
+            [sys.executable, *words[1:]],
+            cwd=folder,
+            stdout=subprocess.PIPE,
+            text=True,
             stderr=subprocess.STDOUT,
             env={**os.environ, 'PYTHONUNBUFFERED': '1', 'COLUMNS': '100'},
-            start_new_session=True)
+            start_new_session=True,
+        )
         self._lines: queue.Queue[str] = queue.Queue()
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()

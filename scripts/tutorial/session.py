@@ -43,8 +43,10 @@ class Session:
         before = Path.cwd()
         os.chdir(ROOT)
         try:
-            return [part if isinstance(part, str) else
-                    Block(part.kind, part.order, self._run(part)) for part in parts]
+            return [
+                part if isinstance(part, str) else Block(part.kind, part.order, self._run(part))
+                for part in parts
+            ]
         finally:
             os.chdir(before)
 
@@ -84,8 +86,9 @@ class Session:
         return f'{first}\n' + self._lines(program, lines)
 
     def _lines(self, program, stated):
-        return ''.join(program.next_line(lambda line, text=text: fits(text, line)) + '\n'
-                       for text in stated)
+        return ''.join(
+            program.next_line(lambda line, text=text: fits(text, line)) + '\n' for text in stated
+        )
 
 
 def fits(stated, line):

@@ -20,8 +20,14 @@ assert len(table(rows).splitlines()) == len(rows) + 2
 
 
 def test_every_row_is_measured_and_states_are_answered():
-    driver = subprocess.Popen([sys.executable, '-c', CODE], cwd=ROOT, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True, start_new_session=True)
+    driver = subprocess.Popen(
+        [sys.executable, '-c', CODE],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
     try:
         output, problem = driver.communicate(timeout=280.0)
     finally:
@@ -34,10 +40,16 @@ def test_every_row_is_measured_and_states_are_answered():
         name, *values = line.split(';')
         rows[name] = [float(value) for value in values]
     assert list(rows) == [
-        'latency p50', 'latency p90', 'latency p99', 'CPU per command', 'states answered',
-        'get_mass_matrix {} p50', 'get_mass_matrix with position p50',
+        'latency p50',
+        'latency p90',
+        'latency p99',
+        'CPU per command',
+        'states answered',
+        'get_mass_matrix {} p50',
+        'get_mass_matrix with position p50',
         'trajectory of 10 000 points',
-        'start to first torque, beyond rclpy']
+        'start to first torque, beyond rclpy',
+    ]
     assert all(math.isfinite(value) for values in rows.values() for value in values)
     ours, relay, _ = rows['states answered']
     assert ours > 0.5 and relay > 0.5

@@ -20,17 +20,21 @@ def bench(monkeypatch):
 def test_every_way_is_timed_against_efforts_from_positions_alone(bench):
     rows = bench.measure(count=300, rounds=3)
     assert [row['what'] for row in rows] == [
-        'efforts, from positions alone', 'efforts, accelerations missing',
-        'efforts, nothing missing', 'largest payload',
-        'scipy and Pinocchio: efforts, from positions alone']
+        'efforts, from positions alone',
+        'efforts, accelerations missing',
+        'efforts, nothing missing',
+        'largest payload',
+        'scipy and Pinocchio: efforts, from positions alone',
+    ]
     assert rows[0]['ratio'] == '1'
     assert all(float(row['ratio']) > 0.0 for row in rows)
 
 
 def test_efforts_that_differ_are_not_timed(bench, monkeypatch):
     honest = bench.by_pinocchio
-    monkeypatch.setattr(bench, 'by_pinocchio', lambda *arguments:
-                        lambda: honest(*arguments)() + 1e-3)
+    monkeypatch.setattr(
+        bench, 'by_pinocchio', lambda *arguments: lambda: honest(*arguments)() + 1e-3
+    )
     with pytest.raises(RuntimeError, match='efforts of Pinocchio: expected a difference'):
         bench.measure(count=50, rounds=1)
 

@@ -9,11 +9,14 @@ from support.mujoco_oracle import MujocoOracle
 from support.pinocchio_oracle import PinocchioOracle
 from support.robots import ARM7, public_robot, random_state, random_urdf
 
-ROBOTS = {'arm7': ARM7, 'ur5': public_robot('ur_description/urdf/ur5_robot.urdf'),
-          'panda': public_robot('panda_description/urdf/panda.urdf'),
-          'so101': public_robot('so_arm_description/urdf/so101.urdf'),
-          'talos': public_robot('talos_data/robots/talos_reduced.urdf'),
-          **{f'random {seed}': seed for seed in range(6)}}
+ROBOTS = {
+    'arm7': ARM7,
+    'ur5': public_robot('ur_description/urdf/ur5_robot.urdf'),
+    'panda': public_robot('panda_description/urdf/panda.urdf'),
+    'so101': public_robot('so_arm_description/urdf/so101.urdf'),
+    'talos': public_robot('talos_data/robots/talos_reduced.urdf'),
+    **{f'random {seed}': seed for seed in range(6)},
+}
 
 
 def text_of(name):
@@ -29,8 +32,7 @@ def drawn(robot, q):
 
 
 def of_group(shapes, group, kind):
-    return {shape.number: shape for shape in shapes
-            if shape.group == group and shape.kind == kind}
+    return {shape.number: shape for shape in shapes if shape.group == group and shape.kind == kind}
 
 
 def rotation(shape):
@@ -66,8 +68,9 @@ def test_centres_and_boxes_are_those_of_pinocchio(name):
     B, b = judge.fold(list(robot.joint_names))
     pinocchio.forwardKinematics(judge.model, judge.data, judge._configuration(B @ q + b))
     shapes = drawn(robot, q)
-    spheres, boxes = (of_group(shapes, *what) for what in (('centre_of_mass', SPHERE),
-                                                           ('inertia', BOX)))
+    spheres, boxes = (
+        of_group(shapes, *what) for what in (('centre_of_mass', SPHERE), ('inertia', BOX))
+    )
     heaviest = max(inertia.mass for inertia in judge.model.inertias[1:])
     largest = max(sphere.size[0] for sphere in spheres.values())
     for k, joint in enumerate(robot.tree.body_names):
@@ -78,7 +81,7 @@ def test_centres_and_boxes_are_those_of_pinocchio(name):
             continue
         assert spheres[k].position == pytest.approx(pose.act(inertia.lever), abs=1e-11)
         # Volumes are as masses, but for what would be too small to be seen.
-        volume = (spheres[k].size[0] / largest)**3
+        volume = (spheres[k].size[0] / largest) ** 3
         assert volume == pytest.approx(max(inertia.mass / heaviest, 0.08**3), rel=1e-9)
         if k not in boxes:
             assert of_group(shapes, 'problems', TEXT)[2 * k + 1].text.endswith('inertia')
@@ -90,22 +93,26 @@ def test_centres_and_boxes_are_those_of_pinocchio(name):
         tensor = pose.rotation @ inertia.inertia @ pose.rotation.T
         # To the thinnest that is drawn: half a thousandth of the robot's length.
         assert R @ np.diag(moments) @ R.T == pytest.approx(
-            tensor, abs=1e-5 * np.trace(tensor) + 1e-7 * inertia.mass)
+            tensor, abs=1e-5 * np.trace(tensor) + 1e-7 * inertia.mass
+        )
 
 
 PROBLEMS = {
     'no real body has this inertia': '<mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.3" '
-                                     'ixy="0" ixz="0" iyz="0"/>',
+    'ixy="0" ixz="0" iyz="0"/>',
     'inertia without mass': '<mass value="0"/><inertia ixx="0.1" iyy="0.1" izz="0.1" '
-                            'ixy="0" ixz="0" iyz="0"/>'}
+    'ixy="0" ixz="0" iyz="0"/>',
+}
 
 
 @pytest.mark.parametrize('problem', PROBLEMS)
 def test_what_is_no_body_is_red_and_said(problem):
     robot = RobotModel.from_urdf(
-        '<robot name="r"><link name="a"/><link name="wrong"><inertial>' + PROBLEMS[problem]
+        '<robot name="r"><link name="a"/><link name="wrong"><inertial>'
+        + PROBLEMS[problem]
         + '</inertial></link><joint name="j" type="continuous"><parent link="a"/>'
-        '<child link="wrong"/></joint></robot>')
+        '<child link="wrong"/></joint></robot>'
+    )
     shapes = drawn(robot, [0.3])
     [box], [text] = (list(of_group(shapes, 'problems', kind).values()) for kind in (BOX, TEXT))
     assert text.text == f'wrong: {problem}'
@@ -114,11 +121,14 @@ def test_what_is_no_body_is_red_and_said(problem):
 
 
 def test_frames_without_mass_are_no_problem():
-    robot = RobotModel.from_urdf('<robot name="r"><link name="a"/><link name="b"/><joint name="j" '
-                                 'type="continuous"><parent link="a"/><child link="b"/></joint>'
-                                 '</robot>')
+    robot = RobotModel.from_urdf(
+        '<robot name="r"><link name="a"/><link name="b"/><joint name="j" '
+        'type="continuous"><parent link="a"/><child link="b"/></joint>'
+        '</robot>'
+    )
     assert {shape.group for shape in drawn(robot, [0.3])}.isdisjoint(
-        {'centre_of_mass', 'inertia', 'problems'})
+        {'centre_of_mass', 'inertia', 'problems'}
+    )
 
 
 def test_bodies_of_the_base_weigh_on_no_joint_and_are_left_out():
@@ -143,11 +153,12 @@ def test_the_payload_is_a_body_of_its_own():
     assert sphere.position == pytest.approx((pose @ [0.0, 0.1, 0.2, 1.0])[:3], abs=1e-14)
     body = of_group(shapes, 'centre_of_mass', SPHERE)
     mass = robot.tree.inertia[0, 3, 3]
-    assert (sphere.size[0] / body[0].size[0])**3 == pytest.approx(2.0 / mass)
+    assert (sphere.size[0] / body[0].size[0]) ** 3 == pytest.approx(2.0 / mass)
     assert sphere.colour != body[0].colour
     a, b, c = np.sort(box.size)
     assert 2.0 / 12.0 * np.array([b**2 + c**2, a**2 + c**2, a**2 + b**2]) == pytest.approx(
-        [0.04, 0.03, 0.02])
+        [0.04, 0.03, 0.02]
+    )
 
 
 def test_a_payload_on_the_base_is_not_drawn():

@@ -16,8 +16,13 @@ def assert_fit_to_be_shown(shapes):
     names = [(shape.group, shape.number) for shape in shapes]
     assert len(set(names)) == len(names)
     for shape in shapes:
-        numbers = [*shape.size, *shape.colour, *shape.position, *shape.orientation,
-                   *(x for point in shape.points for x in point)]
+        numbers = [
+            *shape.size,
+            *shape.colour,
+            *shape.position,
+            *shape.orientation,
+            *(x for point in shape.points for x in point),
+        ]
         assert np.isfinite(numbers).all(), shape
         assert min(shape.size) > 0.0, shape
         assert np.linalg.norm(shape.orientation) == pytest.approx(1.0, abs=1e-12), shape
@@ -29,16 +34,22 @@ def assert_fit_to_be_shown(shapes):
 
 def picture_of(robot, q, effort, limits):
     return Picture(robot.tree, robot.joint_names).shapes(
-        robot, q, robot.gravity_torque(q), effort, limits)
+        robot, q, robot.gravity_torque(q), effort, limits
+    )
 
 
 @settings(max_examples=60)
-@given(seed=st.integers(0, 10_000), scale=st.sampled_from([1e-6, 1.0, 1e6]),
-       load=st.sampled_from([0.0, 1e-300, 1.0, 1e30]), gravity=st.sampled_from([0.0, 1e-9, 9.81]),
-       payload=st.sampled_from([0.0, 1e-9, 1.0, 1e5]))
+@given(
+    seed=st.integers(0, 10_000),
+    scale=st.sampled_from([1e-6, 1.0, 1e6]),
+    load=st.sampled_from([0.0, 1e-300, 1.0, 1e30]),
+    gravity=st.sampled_from([0.0, 1e-9, 9.81]),
+    payload=st.sampled_from([0.0, 1e-9, 1.0, 1e5]),
+)
 def test_no_random_robot_makes_a_picture_that_rviz_refuses(seed, scale, load, gravity, payload):
     robot = RobotModel.from_urdf(random_urdf(seed, mass_scale=scale)).with_gravity(
-        (0.0, 0.6 * gravity, -0.8 * gravity))
+        (0.0, 0.6 * gravity, -0.8 * gravity)
+    )
     rng = np.random.default_rng(seed)
     n = len(robot.joint_names)
     link = robot.link_names[int(rng.integers(len(robot.link_names)))]
@@ -77,8 +88,11 @@ def test_gravity_points_where_things_fall(gravity):
     size = np.linalg.norm(gravity)
     assert vector / np.linalg.norm(vector) == pytest.approx(np.array(gravity) / size)
     whole = RobotModel.from_urdf(ARM7)
-    [earth] = [shape for shape in picture_of(whole, whole.neutral_position, np.zeros(8),
-                                             whole.effort_limits) if shape.kind == ARROW]
+    [earth] = [
+        shape
+        for shape in picture_of(whole, whole.neutral_position, np.zeros(8), whole.effort_limits)
+        if shape.kind == ARROW
+    ]
     assert np.linalg.norm(vector) / np.linalg.norm(earth.points[1]) == pytest.approx(size / 9.81)
     [text] = [shape.text for shape in shapes if (shape.group, shape.number) == ('gravity', 1)]
     assert text == f'{size:.3g} m/s^2'
@@ -93,18 +107,27 @@ def test_without_gravity_there_is_no_arrow():
 def test_without_a_torque_neither_torques_nor_efforts_are_drawn():
     robot = RobotModel.from_urdf(ARM7)
     picture = Picture(robot.tree, robot.joint_names)
-    whole, without = (picture.shapes(robot, robot.neutral_position, torque, np.ones(8),
-                                     robot.effort_limits) for torque in (np.ones(8), None))
-    assert without == whole[:len(without)]
-    assert {shape.group for shape in whole[len(without):]} == {
-        'joints', 'gravity_torque', 'effort', 'torque_text'}
+    whole, without = (
+        picture.shapes(robot, robot.neutral_position, torque, np.ones(8), robot.effort_limits)
+        for torque in (np.ones(8), None)
+    )
+    assert without == whole[: len(without)]
+    assert {shape.group for shape in whole[len(without) :]} == {
+        'joints',
+        'gravity_torque',
+        'effort',
+        'torque_text',
+    }
 
 
 def arrow_of(gravity):
     """Return the arrow of gravity of the pendulum, and how long the pendulum is."""
     robot = RobotModel.from_urdf(PENDULUM).with_gravity(gravity)
-    [arrow] = [shape for shape in picture_of(robot, np.zeros(1), np.zeros(1), robot.effort_limits)
-               if shape.kind == ARROW]
+    [arrow] = [
+        shape
+        for shape in picture_of(robot, np.zeros(1), np.zeros(1), robot.effort_limits)
+        if shape.kind == ARROW
+    ]
     return arrow, 0.35
 
 
@@ -130,8 +153,12 @@ def test_another_payload_takes_the_place_of_the_one_before():
 
     def payload(model):
         q = robot.neutral_position
-        return [shape.size for shape in picture.shapes(
-            model, q, np.zeros(8), np.ones(8), robot.effort_limits) if shape.group == 'payload']
+        return [
+            shape.size
+            for shape in picture.shapes(model, q, np.zeros(8), np.ones(8), robot.effort_limits)
+            if shape.group == 'payload'
+        ]
+
     small, large = (robot.with_payload('hand', mass) for mass in (1.0, 2.0))
     first, second = payload(small), payload(large)
     assert first and second[0][0] == pytest.approx(first[0][0] * 2.0 ** (1 / 3))

@@ -34,8 +34,9 @@ def test_none_gives_none():
     assert quaternions(np.zeros((0, 3, 3))).shape == (0, 4)
 
 
-@pytest.mark.parametrize('axis', [*np.eye(3), *-np.eye(3), [0.6, 0.0, -0.8], [1e-9, 0, 1.0],
-                                  [3**-0.5] * 3])
+@pytest.mark.parametrize(
+    'axis', [*np.eye(3), *-np.eye(3), [0.6, 0.0, -0.8], [1e-9, 0, 1.0], [3**-0.5] * 3]
+)
 def test_a_frame_is_around_its_axis(axis):
     R = frame_around(np.array(axis) / np.linalg.norm(axis))
     assert R[:, 2] == pytest.approx(axis)

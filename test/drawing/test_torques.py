@@ -17,8 +17,12 @@ def drawn(robot, q, torque, effort=None, limits=None, names=None):
     names = robot.joint_names if names is None else names
     nothing = np.full(len(names), np.nan)
     shapes = Picture(robot.tree, names).shapes(
-        robot, q, np.asarray(torque, dtype=float), nothing if effort is None else effort,
-        nothing if limits is None else np.asarray(limits, dtype=float))
+        robot,
+        q,
+        np.asarray(torque, dtype=float),
+        nothing if effort is None else effort,
+        nothing if limits is None else np.asarray(limits, dtype=float),
+    )
     found = {(shape.group, shape.number): shape for shape in shapes}
     assert len(found) == len(shapes)
     return found
@@ -38,9 +42,16 @@ def swept(shape):
     return math.degrees(angle[-1] - angle[0])
 
 
-@pytest.mark.parametrize('source', [ARM7, public_robot('panda_description/urdf/panda.urdf'),
-                                    random_urdf(3), random_urdf(5, joints=9)],
-                         ids=['arm7', 'panda', 'random 3', 'random 5'])
+@pytest.mark.parametrize(
+    'source',
+    [
+        ARM7,
+        public_robot('panda_description/urdf/panda.urdf'),
+        random_urdf(3),
+        random_urdf(5, joints=9),
+    ],
+    ids=['arm7', 'panda', 'random 3', 'random 5'],
+)
 def test_axes_are_those_that_a_small_motion_turns_about(source):
     robot = RobotModel.from_urdf(source)
     n = len(robot.joint_names)
@@ -64,14 +75,16 @@ def test_axes_are_those_that_a_small_motion_turns_about(source):
 def test_the_limit_is_three_quarters_of_a_turn(load, sign):
     robot = RobotModel.from_urdf(ARM7)
     limits = np.nan_to_num(robot.effort_limits, nan=10.0)
-    shapes = drawn(robot, robot.neutral_position, sign * load * limits, -sign * load * limits,
-                   limits)
-    for i, kind in enumerate(robot.tree.kind[:len(limits)]):
+    shapes = drawn(
+        robot, robot.neutral_position, sign * load * limits, -sign * load * limits, limits
+    )
+    for i, kind in enumerate(robot.tree.kind[: len(limits)]):
         torque, effort = shapes['gravity_torque', i], shapes['effort', i]
         if kind:
             length = torque.points[1][2] - torque.points[0][2]
             full = drawn(robot, robot.neutral_position, limits, None, limits)[
-                'gravity_torque', i].points[1][2]
+                'gravity_torque', i
+            ].points[1][2]
             assert length == pytest.approx(sign * load * full, rel=1e-9, abs=0.003 * full)
         else:
             shortest = math.degrees(0.01)
@@ -122,8 +135,15 @@ def test_texts_say_the_gravity_torque_and_its_part_of_the_limit():
     shapes = drawn(robot, robot.neutral_position, torque, np.full(n, 99.0), np.full(n, 30.0))
     texts = [shapes['torque_text', i] for i in range(n)]
     assert [text.text.partition(': ')[2] for text in texts] == [
-        '12.3 N m (41 %)', '-4.5 N m (15 %)', '0 N m (0 %)', '0 N m (0 %)', '0 N m (0 %)',
-        '30 N m (100 %)', '0.1 N m (0 %)', '2.5 N (8 %)']
+        '12.3 N m (41 %)',
+        '-4.5 N m (15 %)',
+        '0 N m (0 %)',
+        '0 N m (0 %)',
+        '0 N m (0 %)',
+        '30 N m (100 %)',
+        '0.1 N m (0 %)',
+        '2.5 N (8 %)',
+    ]
     assert [text.text.partition(':')[0] for text in texts] == list(robot.joint_names)
     assert all(text.kind == TEXT for text in texts)
 
@@ -163,6 +183,8 @@ def test_without_limits_forces_and_torques_are_each_compared_with_their_own_kind
     shapes = drawn(robot, robot.neutral_position, torque)
     assert swept(shapes['gravity_torque', 0]) == pytest.approx(FULL / 4)
     assert swept(shapes['gravity_torque', 1]) == pytest.approx(-FULL)
-    arrow, alone = shapes['gravity_torque', 7], drawn(
-        robot, robot.neutral_position, [0, 0, 0, 0, 0, 0, 0, 1.0])['gravity_torque', 7]
+    arrow, alone = (
+        shapes['gravity_torque', 7],
+        drawn(robot, robot.neutral_position, [0, 0, 0, 0, 0, 0, 0, 1.0])['gravity_torque', 7],
+    )
     assert arrow.points == alone.points

@@ -34,19 +34,23 @@ def test_another_gravity_is_the_same_for_both():
 # digits (docs/accuracy.md holds both against 80-bit arithmetic). So D and G are compared with
 # Pinocchio, and C with the same robot near the base.
 
-FINGER = ('<inertial><origin xyz="0.01 0.02 0.03"/><mass value="0.02"/><inertia ixx="1e-6" '
-          'ixy="1e-8" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>')
+FINGER = (
+    '<inertial><origin xyz="0.01 0.02 0.03"/><mass value="0.02"/><inertia ixx="1e-6" '
+    'ixy="1e-8" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>'
+)
 
 
 def fingers(distance, carrier):
     """Return two light links on an arm without mass, some way from the base."""
-    return (f'<robot name="far"><link name="world"/><link name="arm"/><joint name="way" '
-            f'type="{carrier}"><parent link="world"/><child link="arm"/><axis xyz="0 1 0"/>'
-            f'</joint><link name="a">{FINGER}</link><joint name="j" type="continuous">'
-            f'<parent link="arm"/><child link="a"/><origin xyz="{distance} 2 3" rpy="1 2 3"/>'
-            f'<axis xyz="0 0 1"/></joint><link name="b">{FINGER}</link><joint name="k" '
-            'type="continuous"><parent link="a"/><child link="b"/>'
-            '<origin xyz="0.05 0 0" rpy="0 1 0"/><axis xyz="1 0 0"/></joint></robot>')
+    return (
+        f'<robot name="far"><link name="world"/><link name="arm"/><joint name="way" '
+        f'type="{carrier}"><parent link="world"/><child link="arm"/><axis xyz="0 1 0"/>'
+        f'</joint><link name="a">{FINGER}</link><joint name="j" type="continuous">'
+        f'<parent link="arm"/><child link="a"/><origin xyz="{distance} 2 3" rpy="1 2 3"/>'
+        f'<axis xyz="0 0 1"/></joint><link name="b">{FINGER}</link><joint name="k" '
+        'type="continuous"><parent link="a"/><child link="b"/>'
+        '<origin xyz="0.05 0 0" rpy="0 1 0"/><axis xyz="1 0 0"/></joint></robot>'
+    )
 
 
 def assert_d_and_g_agree(text):

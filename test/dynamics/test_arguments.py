@@ -8,15 +8,17 @@ import pytest
 
 def test_a_link_that_there_is_and_one_that_there_is_not():
     check_link({'a': None}, 'a')
-    with pytest.raises(ArgumentError, match=(
-            r"^link: 'c' is not a link of the robot; expected one of a, b$")):
+    with pytest.raises(
+        ArgumentError, match=(r"^link: 'c' is not a link of the robot; expected one of a, b$")
+    ):
         check_link({'a': None, 'b': None}, 'c')
     many = dict.fromkeys(f'link{i}' for i in range(1000))
     with pytest.raises(ArgumentError, match=r'link49, \.\.\.$') as caught:
         check_link(many, 'x' * 100_000)
     assert len(str(caught.value)) < 1000
-    with pytest.raises(ArgumentError, match=(
-            r"^frame: 'hnd' is not a link of the robot, is 'hand' meant\?$")):
+    with pytest.raises(
+        ArgumentError, match=(r"^frame: 'hnd' is not a link of the robot, is 'hand' meant\?$")
+    ):
         check_link({'hand': None, 'forearm': None}, 'hnd', 'frame')
 
 

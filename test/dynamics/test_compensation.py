@@ -16,8 +16,9 @@ def arm():
     return model.with_friction(viscous=np.full(n, 0.4), coulomb=np.full(n, 0.2))
 
 
-@pytest.mark.parametrize('gravity, coriolis, friction', list(itertools.product(
-    (False, True), repeat=3)))
+@pytest.mark.parametrize(
+    'gravity, coriolis, friction', list(itertools.product((False, True), repeat=3))
+)
 @pytest.mark.parametrize('chosen', [None, (3, 0, 1)])
 def test_it_is_the_sum_of_its_terms(arm, chosen, gravity, coriolis, friction):
     q, qd = np.full(8, 0.3), np.linspace(-1.0, 1.0, 8)
@@ -27,8 +28,11 @@ def test_it_is_the_sum_of_its_terms(arm, chosen, gravity, coriolis, friction):
     places = np.arange(8) if chosen is None else index
     alone = np.zeros(8)  # joints that are not chosen count as standing still
     alone[places] = qd[places]
-    expected = (gravity * arm.gravity_torque(q) + friction * arm.friction_torque(alone)
-                + coriolis * (arm.coriolis_matrix(q, alone) @ alone))
+    expected = (
+        gravity * arm.gravity_torque(q)
+        + friction * arm.friction_torque(alone)
+        + coriolis * (arm.coriolis_matrix(q, alone) @ alone)
+    )
     np.testing.assert_allclose(effort, expected[places], rtol=1e-12, atol=1e-12)
     np.testing.assert_array_equal(G, arm.gravity_torque(q)[places])
     assert unit.needs_velocity == (coriolis or friction)

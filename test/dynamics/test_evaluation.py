@@ -9,8 +9,9 @@ from support.machine_code import needs_machine_code
 from support.robots import random_urdf
 
 
-@pytest.fixture(scope='module', params=[
-    'general', pytest.param('specialised', marks=needs_machine_code)])
+@pytest.fixture(
+    scope='module', params=['general', pytest.param('specialised', marks=needs_machine_code)]
+)
 def model(request):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('DYNAMICS_NODE_SPECIALISE', '01'[request.param == 'specialised'])
@@ -61,24 +62,35 @@ def test_one_bad_state_spoils_no_other(model):
 
 def test_the_answer_can_be_put_into_earlier_arrays(model):
     q, qd, qdd = states(model, 40)
-    for method, arguments in ((model.dynamics, (q, qd)), (model.mass_matrix, (q,)),
-                              (model.gravity_torque, (q,)),
-                              (model.inverse_dynamics, (q, qd, qdd))):
+    for method, arguments in (
+        (model.dynamics, (q, qd)),
+        (model.mass_matrix, (q,)),
+        (model.gravity_torque, (q,)),
+        (model.inverse_dynamics, (q, qd, qdd)),
+    ):
         out = method(*arguments)
         expected = [array.copy() for array in (out if isinstance(out, tuple) else (out,))]
         arrays = out if isinstance(out, tuple) else (out,)
         for array in arrays:
             array[...] = np.nan
         again = method(*arguments, out=out)
-        for array, mine, theirs in zip(arrays, again if isinstance(again, tuple) else (again,),
-                                       expected, strict=True):
+        for array, mine, theirs in zip(
+            arrays, again if isinstance(again, tuple) else (again,), expected, strict=True
+        ):
             assert mine is array
             np.testing.assert_array_equal(mine, theirs)
 
 
-@pytest.mark.parametrize('wrong', [
-    np.empty((5, 2)), np.empty((4, 3)), np.empty((5, 3), dtype=np.float32),
-    np.empty((3, 5)).T, [[0.0] * 3] * 5])
+@pytest.mark.parametrize(
+    'wrong',
+    [
+        np.empty((5, 2)),
+        np.empty((4, 3)),
+        np.empty((5, 3), dtype=np.float32),
+        np.empty((3, 5)).T,
+        [[0.0] * 3] * 5,
+    ],
+)
 def test_arrays_for_the_answer_must_fit(model, wrong):
     q = states(model, 5)[0]
     with pytest.raises(ArgumentError, match='out: expected'):
@@ -88,9 +100,11 @@ def test_arrays_for_the_answer_must_fit(model, wrong):
 def test_arrays_for_the_answer_share_no_memory_with_others(model):
     q, qd, qdd = states(model, 8)
     for method, arguments, out in (
-            (model.gravity_torque, (q,), q), (model.gravity_torque, (q[0],), q[0]),
-            (model.gravity_torque, (q[1:5],), q[0:4]),
-            (model.inverse_dynamics, (q, qd, qdd), qdd)):
+        (model.gravity_torque, (q,), q),
+        (model.gravity_torque, (q[0],), q[0]),
+        (model.gravity_torque, (q[1:5],), q[0:4]),
+        (model.inverse_dynamics, (q, qd, qdd), qdd),
+    ):
         with pytest.raises(ArgumentError, match='out: expected arrays of their own'):
             method(*arguments, out=out)
     D, _, G = model.dynamics(q, qd)
@@ -107,13 +121,16 @@ def test_threads_are_a_number_of_at_least_one(model, threads, count):
 
 def test_a_singular_mass_matrix_is_refused_one_by_one_and_in_batches():
     # Two joints about one axis with nothing between them: only their sum moves inertia.
-    text = random_urdf(5, joints=1, with_mimic=False, prismatic=0.0).replace('</robot>', """
+    text = random_urdf(5, joints=1, with_mimic=False, prismatic=0.0).replace(
+        '</robot>',
+        """
         <link name="between"/><link name="end"><inertial><mass value="1.3"/>
         <origin xyz="0.2 0.1 0"/><inertia ixx="0.01" iyy="0.02" izz="0.025" ixy="0" ixz="0"
         iyz="0"/></inertial></link>
         <joint name="a" type="continuous"><parent link="link0"/><child link="between"/>
         <axis xyz="0.6 0 0.8"/></joint><joint name="b" type="continuous">
-        <parent link="between"/><child link="end"/><axis xyz="0.6 0 0.8"/></joint></robot>""")
+        <parent link="between"/><child link="end"/><axis xyz="0.6 0 0.8"/></joint></robot>""",
+    )
     model = RobotModel.from_urdf(text)
     rng = np.random.default_rng(1)
     for _ in range(2):

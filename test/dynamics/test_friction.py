@@ -56,7 +56,8 @@ def test_every_number_may_be_given_anew_and_the_others_stay():
     expected = [0.7, 0.4] * qd + [1.0, 2.0] * np.tanh(qd / 0.1)
     assert other.friction_torque(qd) == pytest.approx(expected, rel=1e-15)
     assert other.with_friction(viscous=0.0).friction_torque(qd) == pytest.approx(
-        [1.0, 2.0] * np.tanh(qd / 0.1), rel=1e-15)
+        [1.0, 2.0] * np.tanh(qd / 0.1), rel=1e-15
+    )
     # Under another gravity it is the same robot.
     assert other.with_gravity((0, 0, 0)).friction is other.friction
 
@@ -64,16 +65,22 @@ def test_every_number_may_be_given_anew_and_the_others_stay():
 def test_it_is_no_part_of_the_equation_of_motion():
     robot = RobotModel.from_urdf(INDEPENDENT)
     q, qd = np.zeros(2), np.ones(2)
-    assert np.array_equal(robot.inverse_dynamics(q, qd, q),
-                          robot.with_friction(viscous=9.0).inverse_dynamics(q, qd, q))
+    assert np.array_equal(
+        robot.inverse_dynamics(q, qd, q),
+        robot.with_friction(viscous=9.0).inverse_dynamics(q, qd, q),
+    )
 
 
-@pytest.mark.parametrize(('numbers', 'message'), [
-    ({'viscous': [1.0]}, r'viscous: expected one number, or 2 for j, k; got shape \(1,\)'),
-    ({'coulomb': [1.0, -1.0]}, 'coulomb: expected finite numbers >= 0'),
-    ({'coulomb': np.nan}, 'coulomb: expected finite'),
-    ({'viscous': 'much'}, 'viscous: expected'),
-    ({'smoothing_velocity': 0.0}, 'smoothing_velocity: expected numbers > 0')])
+@pytest.mark.parametrize(
+    ('numbers', 'message'),
+    [
+        ({'viscous': [1.0]}, r'viscous: expected one number, or 2 for j, k; got shape \(1,\)'),
+        ({'coulomb': [1.0, -1.0]}, 'coulomb: expected finite numbers >= 0'),
+        ({'coulomb': np.nan}, 'coulomb: expected finite'),
+        ({'viscous': 'much'}, 'viscous: expected'),
+        ({'smoothing_velocity': 0.0}, 'smoothing_velocity: expected numbers > 0'),
+    ],
+)
 def test_wrong_numbers_are_refused(numbers, message):
     with pytest.raises(ArgumentError, match=message):
         RobotModel.from_urdf(INDEPENDENT).with_friction(**numbers)
@@ -102,7 +109,7 @@ def test_rotors_are_what_pinocchio_and_mujoco_call_armature(seed):
         joint = model.joints[model.getJointId(name)]
         order.append(joint.idx_v)
         if joint.nq == 2:
-            x[joint.idx_q:joint.idx_q + 2] = np.cos(q[i]), np.sin(q[i])
+            x[joint.idx_q : joint.idx_q + 2] = np.cos(q[i]), np.sin(q[i])
         else:
             x[joint.idx_q] = q[i]
     model.armature[order] = rotors
@@ -133,8 +140,9 @@ def test_rotors_against_mujoco_and_back_to_none():
     assert robot.mass_matrix(q) == pytest.approx(expected, abs=1e-12)
     # The leader of a mimic joint has a rotor, the joint that follows it has none of its own.
     mimic = RobotModel.from_urdf(MIMIC)
-    assert (mimic.with_rotor_inertia(0.5).mass_matrix([0.0])[0, 0]
-            == pytest.approx(mimic.mass_matrix([0.0])[0, 0] + 0.5))
+    assert mimic.with_rotor_inertia(0.5).mass_matrix([0.0])[0, 0] == pytest.approx(
+        mimic.mass_matrix([0.0])[0, 0] + 0.5
+    )
     back = robot.with_rotor_inertia(0.0)
     assert np.array_equal(back.mass_matrix(q), plain.mass_matrix(q))
     with pytest.raises(ArgumentError, match='rotor_inertia: expected one number, or 8'):
@@ -147,4 +155,5 @@ def test_rotors_and_payload_together_on_a_public_robot():
     q = np.full(n, 0.3)
     loaded = robot.with_payload('panda_hand', 1.5, (0.0, 0.0, 0.1))
     assert loaded.with_rotor_inertia(0.2).mass_matrix(q) == pytest.approx(
-        loaded.mass_matrix(q) + 0.2 * np.eye(n), abs=1e-14)
+        loaded.mass_matrix(q) + 0.2 * np.eye(n), abs=1e-14
+    )

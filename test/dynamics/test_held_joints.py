@@ -15,7 +15,7 @@ def test_held_joints_do_not_accelerate_whatever_the_others_do(seed):
     rng = np.random.default_rng(seed)
     q, qd = random_state(rng, model)
     tau = rng.normal(size=q.size)
-    index = rng.permutation(q.size)[:max(1, q.size // 2)]
+    index = rng.permutation(q.size)[: max(1, q.size // 2)]
     qdd = forward_dynamics_held(model, index, q, qd, tau)
     held = np.setdiff1d(np.arange(q.size), index)
     assert not qdd[held].any()
@@ -28,15 +28,18 @@ def test_all_joints_free_is_the_model_itself():
     model = RobotModel.from_urdf(random_urdf(2))
     q, qd = random_state(np.random.default_rng(2), model)
     every = np.arange(q.size)
-    assert np.array_equal(forward_dynamics_held(model, every, q, qd, q),
-                          model.forward_dynamics(q, qd, q))
+    assert np.array_equal(
+        forward_dynamics_held(model, every, q, qd, q), model.forward_dynamics(q, qd, q)
+    )
 
 
 def test_a_free_joint_that_moves_no_mass_is_refused():
-    text = ('<robot name="r"><link name="w"/><link name="a"/><link name="b"/>'
-            '<joint name="j" type="continuous"><parent link="w"/><child link="a"/></joint>'
-            '<joint name="k" type="continuous"><parent link="w"/><child link="b"/></joint>'
-            '</robot>')
+    text = (
+        '<robot name="r"><link name="w"/><link name="a"/><link name="b"/>'
+        '<joint name="j" type="continuous"><parent link="w"/><child link="a"/></joint>'
+        '<joint name="k" type="continuous"><parent link="w"/><child link="b"/></joint>'
+        '</robot>'
+    )
     model, zeros = RobotModel.from_urdf(text), np.zeros(2)
     with pytest.raises(SingularMassMatrixError, match='of these joints is not positive'):
         forward_dynamics_held(model, np.array([1]), zeros, zeros, zeros)

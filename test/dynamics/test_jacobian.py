@@ -14,8 +14,9 @@ def judged(text, names, q, link, point):
     B, b = judge.fold(list(names))
     x = judge._configuration(B @ q + b)
     frame = judge.model.getFrameId(link, pinocchio.FrameType.BODY)
-    J = pinocchio.computeFrameJacobian(judge.model, judge.data, x, frame,
-                                       pinocchio.LOCAL_WORLD_ALIGNED)
+    J = pinocchio.computeFrameJacobian(
+        judge.model, judge.data, x, frame, pinocchio.LOCAL_WORLD_ALIGNED
+    )
     pinocchio.framesForwardKinematics(judge.model, judge.data, x)
     pose = judge.data.oMf[frame].homogeneous
     offset = pose[:3, :3] @ point
@@ -38,10 +39,14 @@ def test_random_trees_on_every_link(seed):
         assert robot.link_pose(q, link) == pytest.approx(pose, abs=1e-13 * np.abs(pose).max())
 
 
-@pytest.mark.parametrize(('name', 'link'), [
-    ('panda_description/urdf/panda.urdf', 'panda_rightfinger'),
-    ('ur_description/urdf/ur5_robot.urdf', 'tool0'),
-    ('tiago_description/robots/tiago.urdf', 'arm_tool_link')])
+@pytest.mark.parametrize(
+    ('name', 'link'),
+    [
+        ('panda_description/urdf/panda.urdf', 'panda_rightfinger'),
+        ('ur_description/urdf/ur5_robot.urdf', 'tool0'),
+        ('tiago_description/robots/tiago.urdf', 'arm_tool_link'),
+    ],
+)
 def test_public_robots(name, link):
     text = public_robot(name).read_text()
     robot = RobotModel.from_urdf(text)
@@ -59,8 +64,7 @@ def test_it_is_the_derivative_of_where_the_point_is():
     def place(q):
         return (robot.link_pose(q, link) @ [*point, 1.0])[:3]
 
-    numeric = np.array([(place(q + h * e) - place(q - h * e)) / (2 * h)
-                        for e in np.eye(q.size)]).T
+    numeric = np.array([(place(q + h * e) - place(q - h * e)) / (2 * h) for e in np.eye(q.size)]).T
     assert robot.jacobian(q, link, point)[:3] == pytest.approx(numeric, abs=1e-8)
 
 
@@ -68,7 +72,7 @@ def test_gravity_torque_is_the_weight_times_the_jacobian():
     robot = RobotModel.from_urdf(ARM7)
     q, com, mass = np.linspace(-1.0, 1.0, 8), (0.02, 0.01, 0.1), 2.5
     weight = np.array([*(mass * robot.gravity), 0.0, 0.0, 0.0])
-    added = (robot.with_payload('hand', mass, com).gravity_torque(q) - robot.gravity_torque(q))
+    added = robot.with_payload('hand', mass, com).gravity_torque(q) - robot.gravity_torque(q)
     assert added == pytest.approx(-robot.jacobian(q, 'hand', com).T @ weight, abs=1e-12)
 
 

@@ -30,8 +30,10 @@ def test_any_joints_in_any_order():
 
 def test_unknown_names_and_names_twice_are_said_in_words():
     message = refusal(['elbow_pitch', 'nose', 'elbow_pitch'])
-    assert message == ("joints: 'nose' is not a joint that can be moved; 'elbow_pitch' is given "
-                       f'twice; available: {", ".join(ARM.joint_names)}')
+    assert message == (
+        "joints: 'nose' is not a joint that can be moved; 'elbow_pitch' is given "
+        f'twice; available: {", ".join(ARM.joint_names)}'
+    )
 
 
 def test_what_a_terminal_would_obey_is_written_out():
@@ -48,8 +50,11 @@ def test_a_hundred_thousand_wrong_names_are_refused_at_once_and_in_short():
 
 
 def test_a_joint_that_follows_another_is_said_to_follow():
-    with pytest.raises(ArgumentError, match=r"'right_finger_slide' follows 'left_finger_slide': "
-                                            'leave it out; available'):
+    with pytest.raises(
+        ArgumentError,
+        match=r"'right_finger_slide' follows 'left_finger_slide': "
+        'leave it out; available',
+    ):
         JointSelection(ARM, ('right_finger_slide', 'wrist_roll'))
 
 
@@ -65,14 +70,18 @@ def test_a_permutation_that_is_none_is_refused_with_the_name_that_is_wrong():
     expected = '; expected each of 3 joints once, or no name at all'
     assert difference([yaw, 'shoulder_pich', roll]) == (
         "joint_names: 'shoulder_pich' is not a joint that can be moved, is 'shoulder_pitch' "
-        f"meant?; 'shoulder_pitch' is missing{expected}")
+        f"meant?; 'shoulder_pitch' is missing{expected}"
+    )
     assert difference([yaw, pitch, pitch, roll]) == (
-        f"joint_names: 'shoulder_pitch' is given twice{expected}")
+        f"joint_names: 'shoulder_pitch' is given twice{expected}"
+    )
     assert difference([yaw, pitch]) == f"joint_names: '{roll}' is missing{expected}"
     assert difference([yaw, pitch, roll, 'elbow_pitch']) == (
-        f"joint_names: 'elbow_pitch' is not one of the chosen joints{expected}")
+        f"joint_names: 'elbow_pitch' is not one of the chosen joints{expected}"
+    )
     assert "'right_finger_slide' follows 'left_finger_slide': leave it out" in difference(
-        [yaw, pitch, roll, 'right_finger_slide'])
+        [yaw, pitch, roll, 'right_finger_slide']
+    )
 
 
 def test_a_hundred_thousand_names_that_are_no_permutation_are_refused_at_once():

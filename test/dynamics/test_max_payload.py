@@ -49,13 +49,15 @@ def arm():
 def test_a_pendulum_carries_what_its_torque_leaves(pendulum, angle):
     # cos q (M g l/2 + m g l) = limit, at the far end.
     mass, joint = pendulum.max_payload([angle], 'rod')
-    assert mass == pytest.approx((LIMIT / abs(np.cos(angle)) - M * G * LENGTH / 2)
-                                 / (G * LENGTH), rel=1e-13)
+    assert mass == pytest.approx(
+        (LIMIT / abs(np.cos(angle)) - M * G * LENGTH / 2) / (G * LENGTH), rel=1e-13
+    )
     assert joint == 0
     nearer = pendulum.max_payload([angle], 'rod', (-0.3, 0.0, 0.0)).mass
     assert nearer == pytest.approx(mass * LENGTH / (LENGTH - 0.3), rel=1e-13)
     assert pendulum.max_payload([angle], 'hub', (0.4, 0.0, 0.0)).mass == pytest.approx(
-        nearer, rel=1e-13)
+        nearer, rel=1e-13
+    )
 
 
 def test_along_the_real_gravity_vector(pendulum):
@@ -65,7 +67,8 @@ def test_along_the_real_gravity_vector(pendulum):
     assert (wall.mass, wall.joint) == (INF, -1)
     turned = pendulum.with_gravity((-G * np.sin(0.5), 0.0, -G * np.cos(0.5)))
     assert turned.max_payload([0.3], 'rod').mass == pytest.approx(
-        float(pendulum.max_payload([0.8], 'rod').mass), rel=1e-12)
+        float(pendulum.max_payload([0.8], 'rod').mass), rel=1e-12
+    )
     ceiling = pendulum.with_gravity((0.0, 0.0, G)).max_payload([0.3], 'rod').mass
     assert ceiling == pytest.approx(float(pendulum.max_payload([0.3], 'rod').mass), rel=1e-13)
 
@@ -81,20 +84,25 @@ def test_a_fork_lifts_its_force_and_less_while_it_accelerates(lift):
 def test_speeding_up_a_mast_takes_its_torque(lift):
     # (I + m r²) alpha, with r from the mast's axis to the pallet.
     alpha, inertia = 20.0, 2.0 + 2.0 * (0.3**2 + 0.1**2)
-    mass, joint = lift.max_payload([0.0, 1.0], 'pallet', qdd=[alpha, 0.0],
-                                   effort_limits=[50.0, NAN])
+    mass, joint = lift.max_payload(
+        [0.0, 1.0], 'pallet', qdd=[alpha, 0.0], effort_limits=[50.0, NAN]
+    )
     assert mass == pytest.approx((50.0 / alpha - inertia) / (0.7**2 + 0.1**2), rel=1e-12)
     assert joint == 0
 
 
 def test_speed_counts():
     # A slide on a turning mast holds what flies outwards: (M x + m X) w².
-    slide = RobotModel.from_urdf(LIFT.replace('<axis xyz="0 0 1"/>\n<limit lower="0"',
-                                              '<axis xyz="1 0 0"/>\n<limit lower="0"'))
+    slide = RobotModel.from_urdf(
+        LIFT.replace(
+            '<axis xyz="0 0 1"/>\n<limit lower="0"', '<axis xyz="1 0 0"/>\n<limit lower="0"'
+        )
+    )
     w, position = 4.0, 0.5
     mass, joint = slide.max_payload([0.2, position], 'pallet', qd=[w, 0.0])
-    assert mass == pytest.approx((120.0 / w**2 - 2.0 * (0.3 + position)) / (0.7 + position),
-                                 rel=1e-12)
+    assert mass == pytest.approx(
+        (120.0 / w**2 - 2.0 * (0.3 + position)) / (0.7 + position), rel=1e-12
+    )
     assert joint == 1
     assert slide.max_payload([0.2, position], 'pallet').mass == INF
 
@@ -153,9 +161,10 @@ def test_a_robot_without_joints_carries_anything():
 
 def test_more_limit_more_payload(arm):
     q = np.array([0.3, 1.2, 0.2, 1.0, 0.1, 1.0, 0.2, 0.0])
-    less, more = (float(arm.max_payload(q, 'tool_center',
-                                        effort_limits=factor * arm.effort_limits).mass)
-                  for factor in (1.0, 1.1))
+    less, more = (
+        float(arm.max_payload(q, 'tool_center', effort_limits=factor * arm.effort_limits).mass)
+        for factor in (1.0, 1.1)
+    )
     assert more > less > 0.0
 
 
@@ -169,8 +178,7 @@ def ratio_in_pinocchio(text, gravity, model, state, link, point, mass):
     body = pinocchio.Inertia(float(mass), np.array(point), np.zeros((3, 3)))
     oracle.model.appendBodyToJoint(frame.parentJoint, body, frame.placement)
     oracle.data = oracle.model.createData()
-    return (np.abs(oracle.inverse_dynamics(model.joint_names, *state))
-            / model.effort_limits)
+    return np.abs(oracle.inverse_dynamics(model.joint_names, *state)) / model.effort_limits
 
 
 def assert_at_the_limit(text, model, gravity, state, link, point):
@@ -195,8 +203,9 @@ def assert_at_the_limit(text, model, gravity, state, link, point):
 @given(seed=st.integers(0, 2**32 - 1), prismatic=st.sampled_from([0.3, 0.0, 1.0]))
 def test_pinocchio_is_at_its_limit_with_it_and_over_it_with_more(seed, prismatic):
     rng = np.random.default_rng(seed)
-    text = random_urdf(seed, prismatic=prismatic).replace('effort="90"',
-                                                          f'effort="{rng.uniform(5, 900)}"')
+    text = random_urdf(seed, prismatic=prismatic).replace(
+        'effort="90"', f'effort="{rng.uniform(5, 900)}"'
+    )
     gravity = rng.normal(0.0, 6.0, 3)
     model = RobotModel.from_urdf(text, gravity)
     n = len(model.joint_names)
@@ -212,8 +221,9 @@ def test_a_real_arm_on_a_slope_too():
     limiting = set()
     for _ in range(40):
         state = [*rng.uniform(-1.0, 1.0, (1, 8)), *rng.normal(0.0, 0.3, (2, 8))]
-        mass, joint = assert_at_the_limit(text, model, gravity, state, 'tool_center',
-                                          (0.0, 0.02, 0.05))
+        mass, joint = assert_at_the_limit(
+            text, model, gravity, state, 'tool_center', (0.0, 0.02, 0.05)
+        )
         assert 0.0 < mass < 100.0
         limiting.add(int(joint))
     assert len(limiting) > 1  # so it is not always the same question
@@ -233,9 +243,16 @@ def chain_formula(oracle, model, q, link, gravity):
     x = oracle._configuration(B @ q + b)
     pinocchio.forwardKinematics(oracle.model, oracle.data, x)
     pinocchio.updateFramePlacements(oracle.model, oracle.data)
-    J = pinocchio.computeFrameJacobian(oracle.model, oracle.data, x,
-                                       oracle.model.getFrameId(link),
-                                       pinocchio.LOCAL_WORLD_ALIGNED) @ B
+    J = (
+        pinocchio.computeFrameJacobian(
+            oracle.model,
+            oracle.data,
+            x,
+            oracle.model.getFrameId(link),
+            pinocchio.LOCAL_WORLD_ALIGNED,
+        )
+        @ B
+    )
     torque = J[2]
     with np.errstate(divide='ignore'):
         force = np.maximum((limits - without) / torque, (-limits - without) / torque)
@@ -308,20 +325,30 @@ def test_rotors_take_their_share_of_an_acceleration(lift):
     heavy = lift.with_rotor_inertia([0.0, 4.0])
     assert heavy.max_payload([0.0, 1.0], 'pallet').mass == pytest.approx(120.0 / G - 2.0)
     assert heavy.max_payload([0.0, 1.0], 'pallet', qdd=[0.0, 2.5]).mass == pytest.approx(
-        (120.0 - 2.5 * 4.0) / (G + 2.5) - 2.0)
+        (120.0 - 2.5 * 4.0) / (G + 2.5) - 2.0
+    )
 
 
-@pytest.mark.parametrize(('arguments', 'options', 'text'), [
-    (([0.0], 'hook'), {}, "'hook' is not a link of the robot; expected one of world, hub, rod"),
-    (([0.0], 'rod', (0.0, 0.0)), {}, r'point: expected three finite numbers in the frame'),
-    (([0.0], 'rod', (0.0, NAN, 0.0)), {}, r'point: expected .* got \[0.0, nan, 0.0\]'),
-    (([0.0, 1.0], 'rod'), {}, r'q: expected shape \(..., 1\)'),
-    (([0.0], 'rod'), {'qd': [0.0, 1.0]}, r'qd: expected shape \(..., 1\)'),
-    ((np.zeros((2, 1)), 'rod'), {'qdd': np.zeros((3, 1))}, 'expected batch axes that fit'),
-    (([0.0], 'rod'), {'effort_limits': [1.0, 2.0]}, r'effort limits: expected shape \(1,\)'),
-    (([0.0], 'rod'), {'effort_limits': [-1.0]}, 'effort limits: joint 0: expected at least 0')])
-def test_wrong_input_is_answered_with_what_was_expected_and_what_came(pendulum, arguments, options,
-                                                                      text):
+@pytest.mark.parametrize(
+    ('arguments', 'options', 'text'),
+    [
+        (
+            ([0.0], 'hook'),
+            {},
+            "'hook' is not a link of the robot; expected one of world, hub, rod",
+        ),
+        (([0.0], 'rod', (0.0, 0.0)), {}, r'point: expected three finite numbers in the frame'),
+        (([0.0], 'rod', (0.0, NAN, 0.0)), {}, r'point: expected .* got \[0.0, nan, 0.0\]'),
+        (([0.0, 1.0], 'rod'), {}, r'q: expected shape \(..., 1\)'),
+        (([0.0], 'rod'), {'qd': [0.0, 1.0]}, r'qd: expected shape \(..., 1\)'),
+        ((np.zeros((2, 1)), 'rod'), {'qdd': np.zeros((3, 1))}, 'expected batch axes that fit'),
+        (([0.0], 'rod'), {'effort_limits': [1.0, 2.0]}, r'effort limits: expected shape \(1,\)'),
+        (([0.0], 'rod'), {'effort_limits': [-1.0]}, 'effort limits: joint 0: expected at least 0'),
+    ],
+)
+def test_wrong_input_is_answered_with_what_was_expected_and_what_came(
+    pendulum, arguments, options, text
+):
     with pytest.raises(ArgumentError, match=text):
         pendulum.max_payload(*arguments, **options)
 

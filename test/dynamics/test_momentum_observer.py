@@ -29,16 +29,19 @@ ROBOTS = {
     'Panda': public_robot('panda_description/urdf/panda.urdf').read_text(),
     'UR5': public_robot('ur_description/urdf/ur5_robot.urdf').read_text(),
     # Branches, prismatic and mimic joints.
-    'tree 3': random_urdf(3), 'tree 8': random_urdf(8),
+    'tree 3': random_urdf(3),
+    'tree 8': random_urdf(8),
     'only prismatic': random_urdf(5, joints=4, prismatic=1.0),
 }
 
 # A carriage of 2 kg on a level rail.
-CARRIAGE = ('<robot name="carriage"><link name="rail"/><link name="carriage"><inertial>'
-            '<mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
-            '</inertial></link><joint name="slide" type="prismatic"><parent link="rail"/>'
-            '<child link="carriage"/><limit lower="-9" upper="9" effort="9" velocity="9"/>'
-            '</joint></robot>')
+CARRIAGE = (
+    '<robot name="carriage"><link name="rail"/><link name="carriage"><inertial>'
+    '<mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    '</inertial></link><joint name="slide" type="prismatic"><parent link="rail"/>'
+    '<child link="carriage"/><limit lower="-9" upper="9" effort="9" velocity="9"/>'
+    '</joint></robot>'
+)
 
 
 @functools.cache
@@ -51,16 +54,24 @@ def moved(name, is_pushed):
 
     def external(t, q):
         return robot.wrench_on_tip(q, wrench)
+
     return model, [robot.run(steps, external, GAIN, BEGINS) for steps in (times, halved(times))]
 
 
 def observe(observer, motion, chosen=slice(None)):
     """Return the estimate at every time, shape (k, m)."""
-    return np.array([observer.update(t, q, qd, effort[chosen]) for t, q, qd, effort in zip(
-        motion.time, motion.q, motion.qd, motion.effort, strict=True)])
+    return np.array(
+        [
+            observer.update(t, q, qd, effort[chosen])
+            for t, q, qd, effort in zip(
+                motion.time, motion.q, motion.qd, motion.effort, strict=True
+            )
+        ]
+    )
 
 
 # Against MuJoCo ------------------------------------------------------------------------------
+
 
 @pytest.mark.parametrize('name', ROBOTS)
 @pytest.mark.parametrize('is_pushed', [True, False], ids=['pushed', 'not pushed'])
@@ -96,10 +107,12 @@ def simulate(model, text, seconds=0.5, step=1e-4):
             data.qfrc_applied[rows] = motors[rows] + hand
         mujoco.mj_forward(simulation, data)
         mujoco.mj_jacBodyCom(simulation, data, jacobian[:3], jacobian[3:], tip(simulation))
-        external = (jacobian.T @ data.xfrc_applied[tip(simulation)] + data.qfrc_applied
-                    - motors)[rows]
-        samples.append((data.time, data.qpos[rows], data.qvel[rows], motors[rows], external,
-                        lagged))
+        external = (jacobian.T @ data.xfrc_applied[tip(simulation)] + data.qfrc_applied - motors)[
+            rows
+        ]
+        samples.append(
+            (data.time, data.qpos[rows], data.qvel[rows], motors[rows], external, lagged)
+        )
         lagged = lagged + (1 - math.exp(-GAIN * step)) * (external - lagged)
         mujoco.mj_step(simulation, data)
     return Motion(*(np.array(column) for column in zip(*samples, strict=True)))
@@ -131,8 +144,9 @@ ROTORS = 0.1  # kg m²
 def laden():
     """Return the arm with nothing, and the motion of one with payload, friction and rotors."""
     plain = RobotModel.from_urdf(ARM7).with_friction(0.0, 0.0)
-    robot = PushedRobot(with_payload_link(ROBOTS['arm7'], 'hand', **LOAD), plain.joint_names,
-                        FRICTION)
+    robot = PushedRobot(
+        with_payload_link(ROBOTS['arm7'], 'hand', **LOAD), plain.joint_names, FRICTION
+    )
     for name in plain.joint_names:
         robot.oracle.model.dof_armature[robot.oracle.model.joint(name).dofadr] = ROTORS
     times = irregular_times(np.random.default_rng(3), BEGINS, 0.002)
@@ -154,6 +168,7 @@ def test_what_the_model_does_not_know_counts_as_external(unknown):
 
 
 # Closed forms --------------------------------------------------------------------------------
+
 
 @given(gain=st.floats(0.1, 1e4), seed=st.integers(0, 1000))
 def test_a_step_appears_with_the_lag_of_first_order_whatever_the_steps_of_time(gain, seed):
@@ -178,6 +193,7 @@ def test_a_robot_at_rest_shows_what_its_motors_do_not_hold():
 
 # A choice of joints --------------------------------------------------------------------------
 
+
 def test_chosen_joints_in_any_order_count_for_themselves():
     model, [motion, _] = moved('arm7', True)
     names = model.joint_names
@@ -186,8 +202,9 @@ def test_chosen_joints_in_any_order_count_for_themselves():
     observer = MomentumObserver(model, GAIN, [names[i] for i in chosen])
     assert observer.joint_names == tuple(names[i] for i in chosen)
     # The others move too.
-    np.testing.assert_allclose(observe(observer, motion, chosen), whole[:, chosen], rtol=1e-12,
-                               atol=1e-10)
+    np.testing.assert_allclose(
+        observe(observer, motion, chosen), whole[:, chosen], rtol=1e-12, atol=1e-10
+    )
 
 
 def test_others_whose_velocity_is_not_known_stand_still():
@@ -196,12 +213,16 @@ def test_others_whose_velocity_is_not_known_stand_still():
     unknown, resting = motion.qd.copy(), motion.qd.copy()
     unknown[:, others], resting[:, others] = np.nan, 0.0
     names = [model.joint_names[i] for i in chosen]
-    np.testing.assert_array_equal(*(
-        observe(MomentumObserver(model, GAIN, names), motion._replace(qd=qd), chosen)
-        for qd in (unknown, resting)))
+    np.testing.assert_array_equal(
+        *(
+            observe(MomentumObserver(model, GAIN, names), motion._replace(qd=qd), chosen)
+            for qd in (unknown, resting)
+        )
+    )
 
 
 # Beginning anew ------------------------------------------------------------------------------
+
 
 @pytest.fixture
 def carriage():
@@ -270,11 +291,17 @@ def test_it_begins_anew_when_it_is_told_to(carriage):
     assert carriage.update(0.11, [9.0], [9.0], [9.0]) == 0.0
 
 
-@pytest.mark.parametrize('state', [
-    (0.11, [math.nan], [0.0], [0.0]), (0.11, [0.0], [math.nan], [0.0]),
-    (0.11, [0.0], [0.0], [math.nan]), (0.11, [0.0], [math.inf], [0.0]),
-    (math.nan, [0.0], [0.0], [0.0]),
-], ids=['position', 'velocity', 'effort', 'infinite', 'time'])
+@pytest.mark.parametrize(
+    'state',
+    [
+        (0.11, [math.nan], [0.0], [0.0]),
+        (0.11, [0.0], [math.nan], [0.0]),
+        (0.11, [0.0], [0.0], [math.nan]),
+        (0.11, [0.0], [math.inf], [0.0]),
+        (math.nan, [0.0], [0.0], [0.0]),
+    ],
+    ids=['position', 'velocity', 'effort', 'infinite', 'time'],
+)
 def test_what_is_not_finite_is_not_remembered(carriage, state):
     assert np.isnan(carriage.update(*state)).all()
     assert carriage.update(0.12, [0.0], [0.0], [0.0]) == 0.0
@@ -300,23 +327,36 @@ def test_an_estimate_that_was_handed_out_is_never_changed(carriage):
 
 # Wrong arguments -----------------------------------------------------------------------------
 
-@pytest.mark.parametrize('arguments, message', [
-    ({'gain': 0.0}, 'gain: expected a positive finite number, 1/s, got 0.0'),
-    ({'gain': math.nan}, 'gain: expected a positive'),
-    ({'gain': 'fast'}, "got 'fast'"),
-    ({'gain': 1.0, 'longest_step': -1}, 'longest_step: expected a positive finite number, s'),
-    ({'gain': 1.0, 'joints': ['hing']}, "'hing' is not a joint"),
-], ids=str)
+
+@pytest.mark.parametrize(
+    'arguments, message',
+    [
+        ({'gain': 0.0}, 'gain: expected a positive finite number, 1/s, got 0.0'),
+        ({'gain': math.nan}, 'gain: expected a positive'),
+        ({'gain': 'fast'}, "got 'fast'"),
+        ({'gain': 1.0, 'longest_step': -1}, 'longest_step: expected a positive finite number, s'),
+        ({'gain': 1.0, 'joints': ['hing']}, "'hing' is not a joint"),
+    ],
+    ids=str,
+)
 def test_wrong_arguments_are_refused_with_the_reason(arguments, message):
     with pytest.raises(ArgumentError, match=message):
         MomentumObserver(RobotModel.from_urdf(PENDULUM), **arguments)
 
 
-@pytest.mark.parametrize('q, qd, effort, message', [
-    ([0.0], [0.0, 0.0], [0.0], r'qd: expected shape \(1,\), one state of all joints, got \(2,\)'),
-    ([[0.0]], [0.0], [0.0], r'q: expected shape \(1,\)'),
-    ([0.0], [0.0], [], r'effort: expected shape \(1,\), one state of the chosen joints, got'),
-])
+@pytest.mark.parametrize(
+    'q, qd, effort, message',
+    [
+        (
+            [0.0],
+            [0.0, 0.0],
+            [0.0],
+            r'qd: expected shape \(1,\), one state of all joints, got \(2,\)',
+        ),
+        ([[0.0]], [0.0], [0.0], r'q: expected shape \(1,\)'),
+        ([0.0], [0.0], [], r'effort: expected shape \(1,\), one state of the chosen joints, got'),
+    ],
+)
 def test_wrong_shapes_are_refused_and_nothing_is_forgotten(carriage, q, qd, effort, message):
     before = carriage.estimate
     with pytest.raises(ArgumentError, match=message):

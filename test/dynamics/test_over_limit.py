@@ -30,12 +30,19 @@ def test_what_is_not_a_number_is_not_within_a_limit():
     assert over_limit([[NAN]], [1.0]).points.tolist() == [0]
 
 
-@pytest.mark.parametrize(('efforts', 'limits', 'text'), [
-    ([1.0], [1.0], r'efforts: expected shape \(N, n\) with at least one point, got \(1,\)'),
-    (np.zeros((0, 1)), [1.0], r'at least one point, got \(0, 1\)'),
-    ([[1.0]], [1.0, 2.0], r'effort limits: expected shape \(1,\), one per joint, got \(2,\)'),
-    ([[1.0, 1.0]], [1.0, -2.0],
-     'effort limits: joint 1: expected at least 0, or NaN for none, got -2.0')])
+@pytest.mark.parametrize(
+    ('efforts', 'limits', 'text'),
+    [
+        ([1.0], [1.0], r'efforts: expected shape \(N, n\) with at least one point, got \(1,\)'),
+        (np.zeros((0, 1)), [1.0], r'at least one point, got \(0, 1\)'),
+        ([[1.0]], [1.0, 2.0], r'effort limits: expected shape \(1,\), one per joint, got \(2,\)'),
+        (
+            [[1.0, 1.0]],
+            [1.0, -2.0],
+            'effort limits: joint 1: expected at least 0, or NaN for none, got -2.0',
+        ),
+    ],
+)
 def test_wrong_input_is_answered_with_what_was_expected_and_what_came(efforts, limits, text):
     with pytest.raises(ArgumentError, match=text):
         over_limit(efforts, limits)

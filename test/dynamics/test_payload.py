@@ -35,10 +35,14 @@ def test_random_trees_carry_it_on_a_random_link(seed):
     assert_agrees(text, link, random_body(rng), rng.normal(0.0, 6.0, 3), seed)
 
 
-@pytest.mark.parametrize(('name', 'link'), [
-    ('panda_description/urdf/panda.urdf', 'panda_hand'),
-    ('ur_description/urdf/ur5_robot.urdf', 'tool0'),
-    ('kinova_description/robots/kinova.urdf', 'j2s6s200_link_finger_1')])
+@pytest.mark.parametrize(
+    ('name', 'link'),
+    [
+        ('panda_description/urdf/panda.urdf', 'panda_hand'),
+        ('ur_description/urdf/ur5_robot.urdf', 'tool0'),
+        ('kinova_description/robots/kinova.urdf', 'j2s6s200_link_finger_1'),
+    ],
+)
 def test_public_robots_carry_it_at_the_tool(name, link):
     body = random_body(np.random.default_rng(1))
     # On the ceiling, a little askew.
@@ -46,9 +50,11 @@ def test_public_robots_carry_it_at_the_tool(name, link):
 
 
 def test_a_mass_on_a_lever_weighs_what_the_textbook_says():
-    text = ('<robot name="r"><link name="world"/><link name="arm"/><joint name="j" '
-            'type="continuous"><parent link="world"/><child link="arm"/><axis xyz="0 -1 0"/>'
-            '</joint></robot>')
+    text = (
+        '<robot name="r"><link name="world"/><link name="arm"/><joint name="j" '
+        'type="continuous"><parent link="world"/><child link="arm"/><axis xyz="0 -1 0"/>'
+        '</joint></robot>'
+    )
     robot = RobotModel.from_urdf(text).with_payload('arm', 2.0, (0.5, 0.0, 0.0))
     for q in (0.0, 0.4, 2.0):
         assert robot.gravity_torque([q])[0] == pytest.approx(2.0 * 9.81 * 0.5 * np.cos(q))
@@ -66,8 +72,9 @@ def test_without_mass_the_robot_is_what_it_was_to_the_last_bit():
     loaded = robot.with_payload(link, 3.0, (0.01, 0.02, 0.1))
     removed = loaded.with_payload(link, 0.0)
     assert removed.payload is None
-    for old, new, other in zip(before, removed.dynamics(states, states),
-                               loaded.dynamics(states, states), strict=True):
+    for old, new, other in zip(
+        before, removed.dynamics(states, states), loaded.dynamics(states, states), strict=True
+    ):
         assert np.array_equal(old, new)
         assert not np.array_equal(old, other)
 
@@ -102,13 +109,17 @@ def test_a_payload_that_is_no_real_body_is_refused():
         robot.with_payload('hand', 1.0, inertia=np.eye(3) + np.triu(np.ones((3, 3)), 1))
 
 
-@pytest.mark.parametrize(('arguments', 'message'), [
-    (('gripper', 1.0), "link: 'gripper' is not a link of the robot; expected one of .*hand"),
-    (('hand', 'heavy'), 'payload mass: expected a number'),
-    (('hand', np.nan), 'payload mass: expected a finite number'),
-    (('hand', 1.0, (0.0, 0.0)), r'payload com: expected finite numbers of shape \(3,\)'),
-    (('hand', 1.0, (0.0, 0.0, np.inf)), 'payload com'),
-    (('hand', 1.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), r'payload inertia: .* \(3, 3\)')])
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        (('gripper', 1.0), "link: 'gripper' is not a link of the robot; expected one of .*hand"),
+        (('hand', 'heavy'), 'payload mass: expected a number'),
+        (('hand', np.nan), 'payload mass: expected a finite number'),
+        (('hand', 1.0, (0.0, 0.0)), r'payload com: expected finite numbers of shape \(3,\)'),
+        (('hand', 1.0, (0.0, 0.0, np.inf)), 'payload com'),
+        (('hand', 1.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), r'payload inertia: .* \(3, 3\)'),
+    ],
+)
 def test_wrong_arguments_are_refused_in_words(arguments, message):
     with pytest.raises(ArgumentError, match=message):
         RobotModel.from_urdf(ARM7).with_payload(*arguments)

@@ -15,13 +15,15 @@ def test_a_path_and_its_text_give_the_same_robot():
     text = PENDULUM.read_text()
     for source in (PENDULUM, str(PENDULUM), text, text.encode()):
         assert RobotModel.from_urdf(source).mass_matrix([0.3]) == (
-            RobotModel.from_urdf(PENDULUM).mass_matrix([0.3]))
+            RobotModel.from_urdf(PENDULUM).mass_matrix([0.3])
+        )
 
 
 def test_joint_names_are_in_the_order_of_the_urdf():
     text = random_urdf(7, joints=5, with_mimic=False)
-    places = [text.index(f'<joint name="{name}"')
-              for name in RobotModel.from_urdf(text).joint_names]
+    places = [
+        text.index(f'<joint name="{name}"') for name in RobotModel.from_urdf(text).joint_names
+    ]
     assert places == sorted(places)
 
 
@@ -38,10 +40,12 @@ def test_batches_have_leading_axes(robot):
             one = robot.dynamics(q[i, j], qd[i, j])
             for batched, single in zip((D, C, G), one, strict=True):
                 np.testing.assert_array_equal(batched[i, j], single)
-            np.testing.assert_allclose(tau[i, j], robot.inverse_dynamics(q[i, j], qd[i, j],
-                                                                         x[i, j]), rtol=1e-13)
-            np.testing.assert_allclose(qdd[i, j], robot.forward_dynamics(q[i, j], qd[i, j],
-                                                                         x[i, j]), rtol=1e-9)
+            np.testing.assert_allclose(
+                tau[i, j], robot.inverse_dynamics(q[i, j], qd[i, j], x[i, j]), rtol=1e-13
+            )
+            np.testing.assert_allclose(
+                qdd[i, j], robot.forward_dynamics(q[i, j], qd[i, j], x[i, j]), rtol=1e-9
+            )
 
 
 def test_batch_axes_broadcast(robot):
@@ -79,8 +83,9 @@ def test_the_model_cannot_be_changed(robot):
 def test_another_gravity_makes_another_model(robot):
     q = np.full(5, 0.3)
     moon = robot.with_gravity([0, 0, -1.62])
-    np.testing.assert_allclose(moon.gravity_torque(q), robot.gravity_torque(q) * 1.62 / 9.81,
-                               rtol=1e-13)
+    np.testing.assert_allclose(
+        moon.gravity_torque(q), robot.gravity_torque(q) * 1.62 / 9.81, rtol=1e-13
+    )
     np.testing.assert_array_equal(moon.mass_matrix(q), robot.mass_matrix(q))
     assert robot.gravity[2] == -9.81
     assert not robot.with_gravity([0, 0, 0]).gravity_torque(q).any()
@@ -91,18 +96,25 @@ def test_inverse_dynamics_is_the_equation_of_motion(robot):
     q, qd = random_state(rng, robot)
     qdd = rng.normal(size=5)
     D, C, G = robot.dynamics(q, qd)
-    np.testing.assert_allclose(robot.inverse_dynamics(q, qd, qdd), D @ qdd + C @ qd + G,
-                               rtol=1e-13)
+    np.testing.assert_allclose(
+        robot.inverse_dynamics(q, qd, qdd), D @ qdd + C @ qd + G, rtol=1e-13
+    )
 
 
-@pytest.mark.parametrize('call, message', [
-    (lambda r: r.mass_matrix(np.zeros(4)), r'q: expected shape \(..., 5\) for joints .*\(4,\)'),
-    (lambda r: r.mass_matrix(0.0), r'q: expected shape \(..., 5\)'),
-    (lambda r: r.dynamics(np.zeros(5), np.zeros(6)), r'qd: expected shape .* got \(6,\)'),
-    (lambda r: r.dynamics(np.zeros((2, 5)), np.zeros((3, 5))), r'batch axes that fit'),
-    (lambda r: r.with_gravity([0, 0]), r'gravity: expected three finite numbers'),
-    (lambda r: r.with_gravity([0, 0, np.nan]), r'gravity: expected three finite numbers'),
-])
+@pytest.mark.parametrize(
+    'call, message',
+    [
+        (
+            lambda r: r.mass_matrix(np.zeros(4)),
+            r'q: expected shape \(..., 5\) for joints .*\(4,\)',
+        ),
+        (lambda r: r.mass_matrix(0.0), r'q: expected shape \(..., 5\)'),
+        (lambda r: r.dynamics(np.zeros(5), np.zeros(6)), r'qd: expected shape .* got \(6,\)'),
+        (lambda r: r.dynamics(np.zeros((2, 5)), np.zeros((3, 5))), r'batch axes that fit'),
+        (lambda r: r.with_gravity([0, 0]), r'gravity: expected three finite numbers'),
+        (lambda r: r.with_gravity([0, 0, np.nan]), r'gravity: expected three finite numbers'),
+    ],
+)
 def test_a_wrong_argument_is_an_error_that_says_what_was_expected(robot, call, message):
     with pytest.raises(ArgumentError, match=message):
         call(robot)
@@ -115,7 +127,8 @@ def test_nan_in_is_nan_out(robot):
 def test_a_joint_that_moves_nothing_has_no_acceleration():
     robot = RobotModel.from_urdf(
         '<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="continuous">'
-        '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>')
+        '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>'
+    )
     assert 'moving links without mass' in robot.warnings[0]
     with pytest.raises(SingularMassMatrixError, match='inertia behind every joint'):
         robot.forward_dynamics([0.0], [0.0], [1.0])
@@ -134,7 +147,8 @@ def test_limits_and_neutral_position_come_from_the_urdf():
         '<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
         '<limit lower="0.5" upper="2" effort="7" velocity="3"/></joint>'
         '<joint name="k" type="continuous"><parent link="b"/><child link="c"/>'
-        '<axis xyz="0 0 1"/></joint></robot>')
+        '<axis xyz="0 0 1"/></joint></robot>'
+    )
     np.testing.assert_array_equal(robot.position_limits, [[0.5, 2.0], [-np.inf, np.inf]])
     np.testing.assert_array_equal(robot.effort_limits, [7.0, np.nan])
     np.testing.assert_array_equal(robot.velocity_limits, [3.0, np.nan])

@@ -134,8 +134,9 @@ def test_a_robot_with_very_many_joints_goes_on_with_the_general_kernel():
     assert model.gravity_torque(np.zeros(60)).shape == (60,)
 
 
-@pytest.mark.parametrize('duplicate', [
-    copy.copy, copy.deepcopy, lambda item: pickle.loads(pickle.dumps(item))])
+@pytest.mark.parametrize(
+    'duplicate', [copy.copy, copy.deepcopy, lambda item: pickle.loads(pickle.dumps(item))]
+)
 def test_a_model_and_its_methods_can_be_copied_and_pickled(duplicate):
     model = RobotModel.from_urdf(PENDULUM)
     model.note = 'mine'
@@ -205,8 +206,13 @@ for _ in range(10):
 last = Arm(RobotModel.from_urdf({str(PENDULUM)!r}))
 """
     environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
-    run = subprocess.run([sys.executable, '-c', script], env=environment, capture_output=True,
-                         text=True, timeout=120)
+    run = subprocess.run(
+        [sys.executable, '-c', script],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
     assert (run.returncode, run.stderr) == (0, '')
 
 
@@ -222,11 +228,18 @@ def test_a_method_of_a_subclass_stays():
 
 
 def test_python_may_end_while_it_is_made(folder):
-    script = (f'from dynamics_node import RobotModel\n'
-              f'RobotModel.from_urdf({str(PENDULUM)!r}).specialise(wait=False)\n')
+    script = (
+        f'from dynamics_node import RobotModel\n'
+        f'RobotModel.from_urdf({str(PENDULUM)!r}).specialise(wait=False)\n'
+    )
     environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
-    run = subprocess.run([sys.executable, '-W', 'always', '-c', script], env=environment,
-                         capture_output=True, text=True, timeout=120)
+    run = subprocess.run(
+        [sys.executable, '-W', 'always', '-c', script],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
     assert (run.returncode, run.stderr) == (0, '')
     # The other process finishes what it has begun.
     end = time.monotonic() + 60
@@ -256,21 +269,37 @@ def with_random_payload(model, rng):
 def assert_as_the_general_kernel(model, rng):
     """Compare one state and a batch, all quantities; the general kernel knows no machine code."""
     assert inspect.isbuiltin(model.dynamics)
-    general = Evaluation(model._evaluation.packed, model.joint_names, Specialisation(
-        np.empty((0, 3), dtype=np.int64), np.zeros((1, 28))))
+    general = Evaluation(
+        model._evaluation.packed,
+        model.joint_names,
+        Specialisation(np.empty((0, 3), dtype=np.int64), np.zeros((1, 28))),
+    )
     states = rng.uniform(-2.0, 2.0, (3, 9, len(model.joint_names)))
-    batch = (*model.dynamics(*states[:2]), model.mass_matrix(states[0]),
-             model.gravity_torque(states[0]), model.inverse_dynamics(*states))
+    batch = (
+        *model.dynamics(*states[:2]),
+        model.mass_matrix(states[0]),
+        model.gravity_torque(states[0]),
+        model.inverse_dynamics(*states),
+    )
     for i, (q, qd, qdd) in enumerate(zip(*states, strict=True)):
         terms, effort = general.dynamics(q, qd), general.inverse_dynamics(q, qd, qdd)
-        scale = max(np.abs(terms.mass_matrix @ qdd).max(), np.abs(terms.gravity_torque).max(),
-                    np.abs(effort).max(), np.abs(terms.mass_matrix).max())
-        one = (*model.dynamics(q, qd), model.mass_matrix(q), model.gravity_torque(q),
-               model.inverse_dynamics(q, qd, qdd))
+        scale = max(
+            np.abs(terms.mass_matrix @ qdd).max(),
+            np.abs(terms.gravity_torque).max(),
+            np.abs(effort).max(),
+            np.abs(terms.mass_matrix).max(),
+        )
+        one = (
+            *model.dynamics(q, qd),
+            model.mass_matrix(q),
+            model.gravity_torque(q),
+            model.inverse_dynamics(q, qd, qdd),
+        )
         for D, C, G, D_alone, G_alone, tau in (one, [answer[i] for answer in batch]):
             assert_terms_agree(model, qd, (D, C, G), terms, RELATIVE)
-            assert_terms_agree(model, qd, (D_alone, model.coriolis_matrix(q, qd), G_alone),
-                               terms, RELATIVE)
+            assert_terms_agree(
+                model, qd, (D_alone, model.coriolis_matrix(q, qd), G_alone), terms, RELATIVE
+            )
             np.testing.assert_allclose(tau, effort, rtol=0, atol=1e-12 * scale)
 
 
@@ -302,8 +331,15 @@ def test_models_that_carried_something_before_it_was_ready_get_it_too():
     assert heavy.is_specialised
     assert geared.is_specialised
     assert not model.is_specialised
-    assert len({float(robot.mass_matrix(np.zeros(1))[0, 0])
-                for robot in (model, light, heavy, geared)}) == 4
+    assert (
+        len(
+            {
+                float(robot.mass_matrix(np.zeros(1))[0, 0])
+                for robot in (model, light, heavy, geared)
+            }
+        )
+        == 4
+    )
 
 
 def test_that_for_payloads_can_be_asked_for_before_one_comes():
@@ -329,8 +365,9 @@ def test_that_for_payloads_can_be_asked_for_before_one_comes():
     assert begun() == 2
     again = RobotModel.from_urdf(PENDULUM)
     assert again.specialise(loads=True)
-    np.testing.assert_array_equal(again.with_payload('rod', 1.0).mass_matrix(q),
-                                  loaded.mass_matrix(q))
+    np.testing.assert_array_equal(
+        again.with_payload('rod', 1.0).mass_matrix(q), loaded.mass_matrix(q)
+    )
 
 
 def test_a_new_model_does_not_wait_while_machine_code_is_loaded(small, monkeypatch):
@@ -370,8 +407,11 @@ def test_both_can_be_waited_for():
 def test_a_payload_and_rotors_on_a_random_tree(seed):
     rng = np.random.default_rng(seed)
     model = RobotModel.from_urdf(random_urdf(seed, joints=1 + seed))
-    loaded = with_random_payload(model, rng).with_rotor_inertia(
-        rng.uniform(0.0, 1.0, len(model.joint_names))).with_gravity(rng.normal(0.0, 6.0, 3))
+    loaded = (
+        with_random_payload(model, rng)
+        .with_rotor_inertia(rng.uniform(0.0, 1.0, len(model.joint_names)))
+        .with_gravity(rng.normal(0.0, 6.0, 3))
+    )
     assert loaded.specialise()
     for robot in (loaded, with_random_payload(loaded, rng), loaded.with_rotor_inertia(0.0)):
         assert_as_the_general_kernel(robot, rng)
@@ -386,17 +426,22 @@ def test_a_payload_that_is_removed_gives_the_robot_back_to_the_last_bit(small):
     assert not np.array_equal(loaded.dynamics(*states).mass_matrix, batch.mass_matrix)
     removed = loaded.with_payload('link0', 0.0).with_rotor_inertia(0.0)
     assert removed._evaluation.specialisation is model._evaluation.specialisation
-    for old, new in zip((*before, *batch),
-                        (*removed.dynamics(*states[:, 0]), *removed.dynamics(*states)),
-                        strict=True):
+    for old, new in zip(
+        (*before, *batch),
+        (*removed.dynamics(*states[:, 0]), *removed.dynamics(*states)),
+        strict=True,
+    ):
         assert old.tobytes() == new.tobytes()
 
 
 def test_a_link_without_mass_may_become_loaded():
     # The tip weighs nothing, so D is singular, whatever the state: until it carries something.
-    text = random_urdf(12, joints=2, with_mimic=False).replace('</robot>', """
+    text = random_urdf(12, joints=2, with_mimic=False).replace(
+        '</robot>',
+        """
         <link name="tip"/><joint name="last" type="continuous"><parent link="link1"/>
-        <child link="tip"/><axis xyz="0 0 1"/></joint></robot>""")
+        <child link="tip"/><axis xyz="0 0 1"/></joint></robot>""",
+    )
     model = RobotModel.from_urdf(text)
     assert model.specialise()
     rng = np.random.default_rng(12)
@@ -421,8 +466,9 @@ def test_a_payload_far_heavier_than_the_robot_does_not_spoil_it_for_others(monke
     monkeypatch.setattr(robot_code, '_loaded', {})
     again = RobotModel.from_urdf(random_urdf(4, joints=3, with_mimic=False))
     assert again.with_payload(model.link_names[-1], 1e15).is_specialised
-    assert_as_the_general_kernel(again.with_payload(model.link_names[-1], 2.0),
-                                 np.random.default_rng(4))
+    assert_as_the_general_kernel(
+        again.with_payload(model.link_names[-1], 2.0), np.random.default_rng(4)
+    )
 
 
 def test_a_thousand_payloads_leave_nothing_behind(small):

@@ -13,8 +13,11 @@ pytestmark = needs_machine_code
 
 # Compiling takes a second or two each; the general kernel is held to this on all robots, and
 # `kernels/specialised` holds the machine code to the general kernel on random trees.
-PUBLIC = ('ur_description/urdf/ur5_robot.urdf', 'panda_description/urdf/panda.urdf',
-          'kinova_description/robots/kinova.urdf')
+PUBLIC = (
+    'ur_description/urdf/ur5_robot.urdf',
+    'panda_description/urdf/panda.urdf',
+    'kinova_description/robots/kinova.urdf',
+)
 EXTREME = [name for name in extreme_robots() if 'boom' in name or 'km away' in name]
 
 
@@ -23,7 +26,8 @@ CARRIERS = {
     'panda': (lambda: public_robot(PUBLIC[1]).read_text(), 'panda_leftfinger'),
     'kinova': (lambda: public_robot(PUBLIC[2]).read_text(), 'j2s6s200_link_finger_1'),
     'far away': (lambda: extreme_robots()['arm7, its base 1000 km away'], 'hand'),
-    'boom': (lambda: extreme_robots()['1e-6 kg at the end of a turning boom of 10 km'], 'link2')}
+    'boom': (lambda: extreme_robots()['1e-6 kg at the end of a turning boom of 10 km'], 'link2'),
+}
 
 
 def specialised(source):
@@ -68,11 +72,14 @@ def test_machine_code_for_payloads_keeps_the_promise(name):
 def test_machine_code_for_payloads_knows_links_that_weigh_nothing():
     # The last three links are empty frames that joints turn.
     frames = (('tool0', 'e0', '1 0 0'), ('e0', 'e1', '0 1 0'), ('e1', 'e2', '0 0 1'))
-    empty = ''.join(f"""<link name="{link}"/><joint name="turns_{link}" type="continuous">
+    empty = ''.join(
+        f"""<link name="{link}"/><joint name="turns_{link}" type="continuous">
         <parent link="{parent}"/><child link="{link}"/><origin xyz="0 0.1 0.05"/>
-        <axis xyz="{axis}"/></joint>""" for parent, link, axis in frames)
+        <axis xyz="{axis}"/></joint>"""
+        for parent, link, axis in frames
+    )
     text = public_robot(PUBLIC[0]).read_text()
-    text = text[:text.rindex('</robot>')] + empty + '</robot>'
+    text = text[: text.rindex('</robot>')] + empty + '</robot>'
     model = RobotModel.from_urdf(text)
     assert (model.tree.inertia[-3:] == 0.0).all()
     for link in ('e2', 'e1'):

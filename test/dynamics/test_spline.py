@@ -31,25 +31,34 @@ def scipys(time, values, begin=None, end=None):
 @pytest.mark.parametrize('count', [2, 3, 4, 5, 6, 50])
 def test_nothing_given_is_the_spline_that_is_not_a_knot_at_the_ends(count):
     time, values, slopes = points(count, count)
-    np.testing.assert_allclose(ours(time, values, slopes), scipys(time, values),
-                               rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        ours(time, values, slopes), scipys(time, values), rtol=1e-9, atol=1e-9
+    )
 
 
 @pytest.mark.parametrize('count', [2, 3, 4, 5, 6, 50])
 def test_slopes_at_both_ends_clamp_it(count):
     time, values, slopes = points(count, count)
-    np.testing.assert_allclose(ours(time, values, slopes, 0, count - 1),
-                               scipys(time, values, slopes[0], slopes[-1]),
-                               rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        ours(time, values, slopes, 0, count - 1),
+        scipys(time, values, slopes[0], slopes[-1]),
+        rtol=1e-9,
+        atol=1e-9,
+    )
 
 
 @pytest.mark.parametrize('count', [4, 5, 6, 50])
 def test_a_slope_at_one_end_clamps_that_end(count):
     time, values, slopes = points(count, count)
-    np.testing.assert_allclose(ours(time, values, slopes, 0),
-                               scipys(time, values, begin=slopes[0]), rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(ours(time, values, slopes, count - 1),
-                               scipys(time, values, end=slopes[-1]), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        ours(time, values, slopes, 0), scipys(time, values, begin=slopes[0]), rtol=1e-9, atol=1e-9
+    )
+    np.testing.assert_allclose(
+        ours(time, values, slopes, count - 1),
+        scipys(time, values, end=slopes[-1]),
+        rtol=1e-9,
+        atol=1e-9,
+    )
 
 
 def test_a_slope_in_the_middle_makes_two_splines_that_do_not_know_of_each_other():
@@ -63,14 +72,29 @@ def test_a_slope_in_the_middle_makes_two_splines_that_do_not_know_of_each_other(
 def test_slopes_that_are_given_stay_bit_for_bit():
     time, values, slopes = points(2, 9)
     given = (0, 3, 4, 8)
-    np.testing.assert_array_equal(ours(time, values, slopes, *given)[list(given)],
-                                  slopes[list(given)])
+    np.testing.assert_array_equal(
+        ours(time, values, slopes, *given)[list(given)], slopes[list(given)]
+    )
     np.testing.assert_array_equal(ours(time, values, slopes, *range(9)), slopes)
 
 
-@pytest.mark.parametrize(('count', 'given', 'degree'), [
-    (2, (), 1), (2, (0,), 2), (2, (1,), 2), (2, (0, 1), 3), (3, (), 2), (3, (0,), 3),
-    (3, (2,), 3), (3, (1,), 2), (4, (), 3), (5, (1,), 2), (5, (2,), 3), (5, (0, 4), 3)])
+@pytest.mark.parametrize(
+    ('count', 'given', 'degree'),
+    [
+        (2, (), 1),
+        (2, (0,), 2),
+        (2, (1,), 2),
+        (2, (0, 1), 3),
+        (3, (), 2),
+        (3, (0,), 3),
+        (3, (2,), 3),
+        (3, (1,), 2),
+        (4, (), 3),
+        (5, (1,), 2),
+        (5, (2,), 3),
+        (5, (0, 4), 3),
+    ],
+)
 def test_polynomials_come_back_exactly_up_to_the_degree_that_the_data_fix(count, given, degree):
     time, _, _ = points(count, count)
     polynomial = np.polynomial.Polynomial(np.arange(1.0, degree + 2.0))

@@ -19,7 +19,7 @@ VELOCITIES = 'cubic spline through the velocities'
 def sines(time):
     """Return positions, velocities and accelerations of three joints that swing."""
     angle = np.outer(time, RATES) + [0.3, 1.0, 2.0]
-    return np.sin(angle), RATES * np.cos(angle), -RATES**2 * np.sin(angle)
+    return np.sin(angle), RATES * np.cos(angle), -(RATES**2) * np.sin(angle)
 
 
 def without(values, *points):
@@ -40,8 +40,11 @@ def test_what_is_given_stays_bit_for_bit_and_nothing_is_said():
     # Times that do not increase: nobody needs them here.
     time = np.array([0.0, 0.0, 0.0])
     motion = complete_trajectory(time, *sines(np.arange(3.0)))
-    for actual, expected in zip((motion.positions, motion.velocities, motion.accelerations),
-                                sines(np.arange(3.0)), strict=True):
+    for actual, expected in zip(
+        (motion.positions, motion.velocities, motion.accelerations),
+        sines(np.arange(3.0)),
+        strict=True,
+    ):
         np.testing.assert_array_equal(actual, expected)
     assert motion.obtained == ''
 
@@ -55,7 +58,8 @@ def test_positions_alone_give_the_spline_that_assumes_nothing_about_the_ends():
     np.testing.assert_allclose(motion.accelerations, spline(time, 2), rtol=0, atol=1e-10)
     assert motion.obtained == (
         f'velocities were not given: the slopes of a {POSITIONS}; accelerations were not '
-        f'given: the second derivatives of a {POSITIONS}')
+        f'given: the second derivatives of a {POSITIONS}'
+    )
 
 
 @pytest.mark.parametrize('ends', [(0,), (9,), (0, 9)])
@@ -77,8 +81,9 @@ def test_accelerations_of_velocities_do_not_look_at_positions():
     motion = complete_trajectory(time, q.round(5), qd.round(5))
     assert np.abs(motion.accelerations - qdd).max() < 0.05
     assert np.abs(complete_trajectory(time, q.round(5)).accelerations - qdd).max() > 10.0
-    np.testing.assert_allclose(motion.accelerations, CubicSpline(time, qd.round(5))(time, 1),
-                               rtol=0, atol=1e-9)
+    np.testing.assert_allclose(
+        motion.accelerations, CubicSpline(time, qd.round(5))(time, 1), rtol=0, atol=1e-9
+    )
     assert motion.obtained == f'accelerations were not given: the slopes of a {VELOCITIES}'
 
 
@@ -94,11 +99,13 @@ def test_points_without_velocities_and_accelerations_are_filled_in_between():
     # At the ends, beside a point that has one, the velocity is a parabola: h²/6 of its third
     # derivative is missing there.
     np.testing.assert_allclose(motion.accelerations[7], qdd[7], rtol=0, atol=1e-5)
-    np.testing.assert_allclose(motion.accelerations, qdd, rtol=0,
-                               atol=0.05**2 / 6.0 * RATES.max()**4)
+    np.testing.assert_allclose(
+        motion.accelerations, qdd, rtol=0, atol=0.05**2 / 6.0 * RATES.max() ** 4
+    )
     assert motion.obtained == (
         f'velocities of 3 of 41 points were not given: the slopes of a {POSITIONS}; '
-        f'accelerations of 3 of 41 points were not given: the slopes of a {VELOCITIES}')
+        f'accelerations of 3 of 41 points were not given: the slopes of a {VELOCITIES}'
+    )
 
 
 def orders(which):
@@ -108,15 +115,17 @@ def orders(which):
         time = np.linspace(0.0, 4.0, count)
         q, qd, qdd = sines(time)
         motion = complete_trajectory(time, *((q, qd) if which == 'of velocities' else (q,)))
-        actual, expected = ((motion.velocities, qd) if which == 'velocities'
-                            else (motion.accelerations, qdd))
+        actual, expected = (
+            (motion.velocities, qd) if which == 'velocities' else (motion.accelerations, qdd)
+        )
         middle = slice(count // 4, -(count // 4))
         errors.append(np.abs(actual - expected)[middle].max())
     return np.log2(np.array(errors[:-1]) / errors[1:])
 
 
-@pytest.mark.parametrize(('which', 'order'), [
-    ('velocities', 4), ('accelerations', 2), ('of velocities', 4)])
+@pytest.mark.parametrize(
+    ('which', 'order'), [('velocities', 4), ('accelerations', 2), ('of velocities', 4)]
+)
 def test_errors_shrink_with_the_order_of_the_spline(which, order):
     np.testing.assert_allclose(orders(which), order, atol=0.15)
 
@@ -157,8 +166,10 @@ def test_the_caller_keeps_arrays_of_his_own():
     time, q, qd = np.arange(4.0), np.ones((4, 1)), np.full((4, 1), np.nan)
     motion = complete_trajectory(time, q, qd)
     assert np.isnan(qd).all() and q.flags.writeable and time.flags.writeable
-    assert not any(array.flags.writeable for array in (
-        motion.time, motion.positions, motion.velocities, motion.accelerations))
+    assert not any(
+        array.flags.writeable
+        for array in (motion.time, motion.positions, motion.velocities, motion.accelerations)
+    )
 
 
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(1, 12), joints=st.integers(0, 3))
@@ -168,8 +179,11 @@ def test_any_pattern_of_gaps_reproduces_a_parabola(seed, count, joints):
     rng = np.random.default_rng(seed)
     time = rng.normal() + np.cumsum(rng.uniform(0.1, 1.0, count))
     a, b, c = rng.normal(size=(3, joints))
-    q, qd, qdd = (a + np.outer(time, b) + np.outer(time**2, c), b + np.outer(time, 2.0 * c),
-                  np.outer(np.ones(count), 2.0 * c))
+    q, qd, qdd = (
+        a + np.outer(time, b) + np.outer(time**2, c),
+        b + np.outer(time, 2.0 * c),
+        np.outer(np.ones(count), 2.0 * c),
+    )
     velocities = np.where(rng.random((count, 1)) < 0.5, np.nan, qd)
     accelerations = np.where(rng.random((count, 1)) < 0.5, np.nan, qdd)
     motion = complete_trajectory(time, q, velocities, accelerations)
@@ -186,16 +200,23 @@ def test_any_pattern_of_gaps_reproduces_a_parabola(seed, count, joints):
 
 
 @pytest.mark.parametrize('make', [PinocchioOracle, MujocoOracle])
-@pytest.mark.parametrize('text', [ARM7.read_text(), random_urdf(4), random_urdf(5)],
-                         ids=['arm7', 'tree', 'tree with mimic'])
+@pytest.mark.parametrize(
+    'text',
+    [ARM7.read_text(), random_urdf(4), random_urdf(5)],
+    ids=['arm7', 'tree', 'tree with mimic'],
+)
 def test_efforts_are_those_of_the_judges_along_the_motion(text, make):
     model, oracle = RobotModel.from_urdf(text), make(text)
     n = len(model.joint_names)
     time = np.linspace(0.0, 3.0, 25)
     q = 0.4 * np.sin(np.outer(time, np.linspace(0.5, 1.5, n)))
     spline = CubicSpline(time, q)  # the judges' own derivatives
-    expected = np.array([oracle.inverse_dynamics(model.joint_names, q[i], spline(t, 1),
-                                                 spline(t, 2)) for i, t in enumerate(time)])
+    expected = np.array(
+        [
+            oracle.inverse_dynamics(model.joint_names, q[i], spline(t, 1), spline(t, 2))
+            for i, t in enumerate(time)
+        ]
+    )
     actual = model.trajectory_effort(time, q)
     assert np.abs(actual - expected).max() <= 1e-9 * np.abs(expected).max()
     # And not just gravity: the motion counts.
@@ -205,8 +226,9 @@ def test_efforts_are_those_of_the_judges_along_the_motion(text, make):
 def test_efforts_of_known_derivatives_are_inverse_dynamics():
     model = RobotModel.from_urdf(ARM7)
     q, qd, qdd = np.random.default_rng(3).normal(0.0, 0.3, (3, 50, 8))
-    np.testing.assert_array_equal(model.trajectory_effort(np.arange(50.0), q, qd, qdd),
-                                  model.inverse_dynamics(q, qd, qdd))
+    np.testing.assert_array_equal(
+        model.trajectory_effort(np.arange(50.0), q, qd, qdd), model.inverse_dynamics(q, qd, qdd)
+    )
 
 
 def test_a_swinging_pendulum_needs_the_torque_of_the_closed_form():
@@ -214,8 +236,7 @@ def test_a_swinging_pendulum_needs_the_torque_of_the_closed_form():
     M, length, radius, g = 3.0, 0.7, 0.05, 9.81
     time = np.linspace(0.0, 2.0, 201)
     q, qdd = np.sin(3.0 * time), -9.0 * np.sin(3.0 * time)
-    expected = ((M * length**2 / 3.0 + M * radius**2 / 4.0) * qdd
-                + M * g * length / 2.0 * np.cos(q))
+    expected = (M * length**2 / 3.0 + M * radius**2 / 4.0) * qdd + M * g * length / 2.0 * np.cos(q)
     actual = model.trajectory_effort(time, q[:, None], 3.0 * np.cos(3.0 * time)[:, None])[:, 0]
     assert np.abs(actual - expected).max() < 1e-4  # of 14 N m: the spline's error at the ends
 
@@ -225,30 +246,52 @@ def test_a_swinging_pendulum_needs_the_torque_of_the_closed_form():
 NAN, INF = float('nan'), float('inf')
 
 
-@pytest.mark.parametrize(('arguments', 'text'), [
-    (([], np.zeros((0, 2))), r'time: expected shape \(N,\) with at least one point, got \(0,\)'),
-    ((0.0, [[1.0]]), r'time: expected shape \(N,\) with at least one point, got \(\)'),
-    (([0, 1], [[1.0]]), r'positions: expected shape \(2, n\), one row per time, got \(1, 1\)'),
-    (([0, 1], [1.0, 2.0]), r'positions: expected shape \(2, n\), one row per time, got \(2,\)'),
-    (([0, 1], [[1.0], [1.0, 2.0]]), 'positions: expected numbers, as many for each point'),
-    (([0, 1], [['a'], ['b']]), 'positions: expected numbers'),
-    (([0, NAN], [[1.0], [2.0]]), 'time: point 1: expected a finite number, got nan'),
-    (([0, 1], [[1.0, 2.0], [2.0, INF]]),
-     'positions: point 1, joint 1: expected a finite number, got inf'),
-    (([0, 1, 2], [[1.0], [2.0], [NAN]]), 'positions: point 2, joint 0: .* got nan'),
-    (([0, 1], [[1.0], [2.0]], [[1.0]]),
-     r'velocities: expected the shape of positions, \(2, 1\), got \(1, 1\)'),
-    (([0, 1], [[1.0, 2.0]] * 2, [[1.0, 2.0], [NAN, 1.0]]),
-     'velocities: point 1, joint 0: expected a finite number, or NaN for all joints of a point '
-     'where they are missing, got nan'),
-    (([0, 1], [[1.0]] * 2, None, [[INF], [1.0]]),
-     'accelerations: point 0, joint 0: .* got inf'),
-    (([0, 1, 1, 2], [[1.0]] * 4),
-     r'time: point 2: expected more than 1.0 s, the time of the point before, got 1.0 s; or '
-     'give the velocities and accelerations of all points'),
-    (([0, 1, 0.5], [[1.0]] * 3, [[1.0]] * 3), 'time: point 2: expected more than 1.0 s'),
-    (([0, 1e-320, 1], [[1.0], [2.0], [3.0]]),
-     'time: point 0: expected steps long enough for finite velocities and accelerations')])
+@pytest.mark.parametrize(
+    ('arguments', 'text'),
+    [
+        (
+            ([], np.zeros((0, 2))),
+            r'time: expected shape \(N,\) with at least one point, got \(0,\)',
+        ),
+        ((0.0, [[1.0]]), r'time: expected shape \(N,\) with at least one point, got \(\)'),
+        (([0, 1], [[1.0]]), r'positions: expected shape \(2, n\), one row per time, got \(1, 1\)'),
+        (
+            ([0, 1], [1.0, 2.0]),
+            r'positions: expected shape \(2, n\), one row per time, got \(2,\)',
+        ),
+        (([0, 1], [[1.0], [1.0, 2.0]]), 'positions: expected numbers, as many for each point'),
+        (([0, 1], [['a'], ['b']]), 'positions: expected numbers'),
+        (([0, NAN], [[1.0], [2.0]]), 'time: point 1: expected a finite number, got nan'),
+        (
+            ([0, 1], [[1.0, 2.0], [2.0, INF]]),
+            'positions: point 1, joint 1: expected a finite number, got inf',
+        ),
+        (([0, 1, 2], [[1.0], [2.0], [NAN]]), 'positions: point 2, joint 0: .* got nan'),
+        (
+            ([0, 1], [[1.0], [2.0]], [[1.0]]),
+            r'velocities: expected the shape of positions, \(2, 1\), got \(1, 1\)',
+        ),
+        (
+            ([0, 1], [[1.0, 2.0]] * 2, [[1.0, 2.0], [NAN, 1.0]]),
+            'velocities: point 1, joint 0: expected a finite number, or NaN for all joints of a '
+            'point where they are missing, got nan',
+        ),
+        (
+            ([0, 1], [[1.0]] * 2, None, [[INF], [1.0]]),
+            'accelerations: point 0, joint 0: .* got inf',
+        ),
+        (
+            ([0, 1, 1, 2], [[1.0]] * 4),
+            r'time: point 2: expected more than 1.0 s, the time of the point before, got 1.0 s; '
+            'or give the velocities and accelerations of all points',
+        ),
+        (([0, 1, 0.5], [[1.0]] * 3, [[1.0]] * 3), 'time: point 2: expected more than 1.0 s'),
+        (
+            ([0, 1e-320, 1], [[1.0], [2.0], [3.0]]),
+            'time: point 0: expected steps long enough for finite velocities and accelerations',
+        ),
+    ],
+)
 def test_wrong_input_is_answered_with_what_was_expected_and_what_came(arguments, text):
     with pytest.raises(ArgumentError, match=text):
         complete_trajectory(*arguments)

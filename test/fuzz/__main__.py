@@ -36,15 +36,27 @@ def main(arguments=None):
 
     """
     parser = argparse.ArgumentParser(prog='python -m fuzz', description=__doc__)
-    parser.add_argument('--inputs', type=int, default=100_000,
-                        help='half descriptions, half streams of joint states '
-                             '(default: %(default)s)')
-    parser.add_argument('--seed', type=int, help='draw what this seed draws (default: 0 where CI '
-                                                 'is set, otherwise another in every run)')
-    parser.add_argument('--replay', type=Path, metavar='FILE',
-                        help='put only this input through its door')
-    parser.add_argument('--folder', type=Path, default=_FOLDER,
-                        help='where inputs that find something are written (default: log/fuzz)')
+    parser.add_argument(
+        '--inputs',
+        type=int,
+        default=100_000,
+        help='half descriptions, half streams of joint states (default: %(default)s)',
+    )
+    parser.add_argument(
+        '--seed',
+        type=int,
+        help='draw what this seed draws (default: 0 where CI '
+        'is set, otherwise another in every run)',
+    )
+    parser.add_argument(
+        '--replay', type=Path, metavar='FILE', help='put only this input through its door'
+    )
+    parser.add_argument(
+        '--folder',
+        type=Path,
+        default=_FOLDER,
+        help='where inputs that find something are written (default: log/fuzz)',
+    )
     options = parser.parse_args(arguments)
     if options.inputs < len(_DOORS):
         parser.error(f'expected at least {len(_DOORS)} inputs, got {options.inputs}')
@@ -54,8 +66,10 @@ def main(arguments=None):
     seed = options.seed
     if seed is None:
         seed = 0 if os.environ.get('CI') else random.SystemRandom().randrange(10**6)
-    results = [Campaign(door, options.folder).run(options.inputs // len(_DOORS), seed, _say)
-               for door in _DOORS]
+    results = [
+        Campaign(door, options.folder).run(options.inputs // len(_DOORS), seed, _say)
+        for door in _DOORS
+    ]
     print_results(Console(), results, seed)
     return int(any(result.findings for result in results))
 
@@ -72,8 +86,11 @@ def be_strict():
 def _replay(path):
     door = next((door for door in _DOORS if path.suffix == door.SUFFIX), None)
     if door is None:
-        print(f"error: expected a file ending in {' or '.join(door.SUFFIX for door in _DOORS)}, "
-              f"got '{path}'", file=sys.stderr)
+        print(
+            f'error: expected a file ending in {" or ".join(door.SUFFIX for door in _DOORS)}, '
+            f"got '{path}'",
+            file=sys.stderr,
+        )
         return 2
     door.warm_up()
     print(door.check(door.from_bytes(path.read_bytes())))

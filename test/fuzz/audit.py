@@ -3,8 +3,23 @@
 from contextlib import contextmanager
 import sys
 
-_FORBIDDEN = ('open', 'os.', 'socket.', 'urllib.', 'http.', 'ftplib.', 'subprocess.', 'shutil.',
-              'glob.', 'tempfile.', 'mmap.', 'import', 'ctypes.dlopen', 'exec', 'compile')
+_FORBIDDEN = (
+    'open',
+    'os.',
+    'socket.',
+    'urllib.',
+    'http.',
+    'ftplib.',
+    'subprocess.',
+    'shutil.',
+    'glob.',
+    'tempfile.',
+    'mmap.',
+    'import',
+    'ctypes.dlopen',
+    'exec',
+    'compile',
+)
 
 
 class OpenedError(Exception):

@@ -114,18 +114,24 @@ class Campaign:
         result, start = self.result, time.monotonic()
         while result.inputs < inputs and result.failures < _ENOUGH_FINDINGS:
             tenth = result.inputs * 10 // inputs
-            self._some(min(_AT_ONCE, inputs - result.inputs, max(1, inputs // 10)),
-                       seed + result.inputs)
+            self._some(
+                min(_AT_ONCE, inputs - result.inputs, max(1, inputs // 10)), seed + result.inputs
+            )
             if not result.early_memory and result.inputs * 10 >= inputs:
                 result.early_memory = memory()
             if result.inputs * 10 // inputs > tenth:
-                say(f'{result.name}: {result.inputs} of {inputs} inputs, '
-                    f'{time.monotonic() - start:.0f} s, {len(result.findings)} findings')
+                say(
+                    f'{result.name}: {result.inputs} of {inputs} inputs, '
+                    f'{time.monotonic() - start:.0f} s, {len(result.findings)} findings'
+                )
         result.late_memory = memory()
         result.peak_memory = _peak_memory()
         if result.early_memory and result.late_memory > result.early_memory + MAX_GROWTH:
-            self._found('memory', f'MemoryError: from {result.early_memory:.0f} to '
-                        f'{result.late_memory:.0f} MB', b'')
+            self._found(
+                'memory',
+                f'MemoryError: from {result.early_memory:.0f} to {result.late_memory:.0f} MB',
+                b'',
+            )
         result.duration = time.monotonic() - start
         os.close(self._file)
         self._running.unlink()
@@ -167,12 +173,17 @@ class Campaign:
                 except Exception as error:
                     self._failing = error, data
                     raise
+
         self._failing = None
         test = settings(
-            max_examples=max(1, count // SIBLINGS), database=None, deadline=None,
-            derandomize=False, suppress_health_check=list(HealthCheck),
+            max_examples=max(1, count // SIBLINGS),
+            database=None,
+            deadline=None,
+            derandomize=False,
+            suppress_health_check=list(HealthCheck),
             phases=(Phase.generate, Phase.shrink),
-            report_multiple_bugs=False)(seeded(seed)(given(self.door.inputs())(examine)))
+            report_multiple_bugs=False,
+        )(seeded(seed)(given(self.door.inputs())(examine)))
         try:
             test()
         except Exception as error:
@@ -180,9 +191,12 @@ class Campaign:
                 raise
             wrong, data = self._failing
             # An input that fails now and then is a finding too, and hypothesis says so.
-            self._found(_place(wrong), f'{type(wrong).__name__}: {wrong}'
-                        + ('' if error is wrong else f' ({type(error).__name__})'),
-                        self.door.to_bytes(data))
+            self._found(
+                _place(wrong),
+                f'{type(wrong).__name__}: {wrong}'
+                + ('' if error is wrong else f' ({type(error).__name__})'),
+                self.door.to_bytes(data),
+            )
         # Even if nothing new could be drawn.
         self.result.inputs = max(self.result.inputs, before + 1)
 
@@ -191,8 +205,9 @@ class Campaign:
         self.result.failures += 1
         if where in findings:
             return
-        path = self._folder / f'{self.door.NAME.replace(" ", "_")}_{len(findings)}' \
-            f'{self.door.SUFFIX}'
+        path = (
+            self._folder / f'{self.door.NAME.replace(" ", "_")}_{len(findings)}{self.door.SUFFIX}'
+        )
         path.write_bytes(content)
         findings[where] = Finding(error, where, content, path)
 
@@ -218,8 +233,10 @@ def _place(error):
 @contextmanager
 def _alarm():
     """Raise SlowError where the code inside hangs."""
+
     def ring(*_):
         raise SlowError
+
     before = signal.signal(signal.SIGALRM, ring)
     # Somebody else may use the timer to end a test.
     remaining, interval = signal.setitimer(signal.ITIMER_REAL, _HANGS)

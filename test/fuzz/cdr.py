@@ -2,8 +2,25 @@
 
 import struct
 
-_LIES = (0, 1, 2, 3, 4, 5, 100, 4_095, 4_097, 65_536, 2**24, 2**28, 2**29 - 1, 2**31 - 1, 2**31,
-         2**32 - 8, 2**32 - 1)
+_LIES = (
+    0,
+    1,
+    2,
+    3,
+    4,
+    5,
+    100,
+    4_095,
+    4_097,
+    65_536,
+    2**24,
+    2**28,
+    2**29 - 1,
+    2**31 - 1,
+    2**31,
+    2**32 - 8,
+    2**32 - 1,
+)
 
 
 class _Writer:
@@ -66,6 +83,9 @@ def joint_state(stamp, frame, names, sequences, lie=(-1, 0)):
 def lie(rng, names):
     """Return a lie about one count of a state of so many names."""
     # A count is only behind the texts: as many are tried there as among them.
-    at = rng.randrange(names + 5) if rng.random() < 0.5 else rng.choice((0, 1, *range(
-        names + 2, names + 5)))
+    at = (
+        rng.randrange(names + 5)
+        if rng.random() < 0.5
+        else rng.choice((0, 1, *range(names + 2, names + 5)))
+    )
     return at, rng.choice((rng.choice(_LIES), rng.randrange(12), rng.randrange(2**32)))

@@ -81,8 +81,11 @@ def _use(model):
     q = robot.buffer.position
     assert np.isfinite(q).all(), f'neutral position {q}'
     try:
-        for name, array in (('G', _gravity_torque(robot)), ('D', model.mass_matrix(q)),
-                            ('C', model.coriolis_matrix(q, np.ones_like(q)))):
+        for name, array in (
+            ('G', _gravity_torque(robot)),
+            ('D', model.mass_matrix(q)),
+            ('C', model.coriolis_matrix(q, np.ones_like(q))),
+        ):
             assert np.isfinite(array).all(), f'{name} is not finite: {array}'
         is_usable = robot.is_mass_matrix_positive_definite()
     except DynamicsError as error:

@@ -61,14 +61,23 @@ def descriptions():
 
     """
     ways = {
-        -1: seeds(1).map(lambda drawn: [grown_text(random.Random(seed)).encode()
-                                        for seed, in siblings(drawn)]),
+        -1: seeds(1).map(
+            lambda drawn: [grown_text(random.Random(seed)).encode() for (seed,) in siblings(drawn)]
+        ),
         -2: st.binary(max_size=200).map(lambda data: [data]),
-        -3: st.text(max_size=200).map(lambda text: [text.encode(errors='surrogatepass')])}
-    robots = [st.builds(lambda text, drawn: [_changed(text, each) for each in siblings(drawn)],
-                        st.just(text), seeds(4)) for text in bases()]
+        -3: st.text(max_size=200).map(lambda text: [text.encode(errors='surrogatepass')]),
+    }
+    robots = [
+        st.builds(
+            lambda text, drawn: [_changed(text, each) for each in siblings(drawn)],
+            st.just(text),
+            seeds(4),
+        )
+        for text in bases()
+    ]
     return st.integers(-3, len(robots) - 1).flatmap(
-        lambda way: robots[way] if way >= 0 else ways[way])
+        lambda way: robots[way] if way >= 0 else ways[way]
+    )
 
 
 def _changed(text, each):

@@ -25,9 +25,12 @@ NAME = 'joint states'
 SUFFIX = '.hex'
 # The last joint is measured, but nothing depends on it.
 _NEEDED = JOINTS[:3]
-_LIMITS = MotionLimits(JOINTS, [3.0, 3.0, math.nan, 1.0],
-                       [(-3.0, 3.0), (-math.inf, math.inf), (0.0, 1.0), (0.0, 1.0)],
-                       [False, True, False, False])
+_LIMITS = MotionLimits(
+    JOINTS,
+    [3.0, 3.0, math.nan, 1.0],
+    [(-3.0, 3.0), (-math.inf, math.inf), (0.0, 1.0), (0.0, 1.0)],
+    [False, True, False, False],
+)
 _TIMEOUT = 0.1
 # A text that stands in the log, once a second.
 _LONGEST_MESSAGE = 1_000
@@ -103,8 +106,9 @@ def _receive(reader, buffer, data, clock):
     path.use(buffer)
     path.enable(now)
     try:
-        path.process_joint_state(now, message.name, message.position, message.velocity, stamp,
-                                 clock, message.effort)
+        path.process_joint_state(
+            now, message.name, message.position, message.velocity, stamp, clock, message.effort
+        )
     finally:
         _judge_text(path.output.machine.reason)
     _judge_text(buffer.outside() or '-')
@@ -127,8 +131,11 @@ def _read(reader, data):
             message = reader.read(data)
     except RejectedStateError:
         # The reader refuses more, but only what no robot sends.
-        assert expected is None or data[:2] not in (b'\x00\x00', b'\x00\x01') \
-            or _is_too_large(expected), 'rclpy reads this message'
+        assert (
+            expected is None
+            or data[:2] not in (b'\x00\x00', b'\x00\x01')
+            or _is_too_large(expected)
+        ), 'rclpy reads this message'
         raise
     except Exception as error:
         if repr(error) != refusal:
@@ -153,18 +160,24 @@ def _judge_text(text):
 
 
 def _is_too_large(message):
-    return max(len(message.name), len(message.position), len(message.velocity),
-               len(message.effort)) > MAX_NAMES
+    return (
+        max(len(message.name), len(message.position), len(message.velocity), len(message.effort))
+        > MAX_NAMES
+    )
 
 
 def _state(buffer):
     # As bytes for the same reason. The time is after all that come: a joint measured by any of
     # them is older by another number of periods.
     end = (CLOCK + 8 * PERIOD) * 1e-9
-    return (buffer.position.tobytes(), buffer.velocity.tobytes(), buffer.age(end),
-            buffer.accepted, buffer.effort.tobytes(),
-            *(buffer.stale_joints(end, (age - 0.5) * PERIOD * 1e-9)
-              for age in range(1, 9)))
+    return (
+        buffer.position.tobytes(),
+        buffer.velocity.tobytes(),
+        buffer.age(end),
+        buffer.accepted,
+        buffer.effort.tobytes(),
+        *(buffer.stale_joints(end, (age - 0.5) * PERIOD * 1e-9) for age in range(1, 9)),
+    )
 
 
 def _judge(buffer):

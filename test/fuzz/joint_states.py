@@ -10,14 +10,33 @@ JOINTS = ('shoulder', 'elbow', 'wrist', 'finger')
 # When the first message comes and how much later each further one, ns.
 CLOCK, PERIOD = 5_000_000_000, 10_000_000
 _USUAL = tuple(name.encode() + b'\x00' for name in JOINTS)
-_UNUSUAL = (b'other\x00', b'\xff\xfe\x00', b'\x00', b'', b'elbow', b'el\x00bow\x00',
-            b'w' * 300 + b'\x00', '肘\x00'.encode(), b'elbow\n\x00', b' elbow\x00', b'ELBOW\x00')
+_UNUSUAL = (
+    b'other\x00',
+    b'\xff\xfe\x00',
+    b'\x00',
+    b'',
+    b'elbow',
+    b'el\x00bow\x00',
+    b'w' * 300 + b'\x00',
+    '肘\x00'.encode(),
+    b'elbow\n\x00',
+    b' elbow\x00',
+    b'ELBOW\x00',
+)
 _FRAMES = (b'base\x00', b'base\x00', b'\x00', b'', b'base', b'\xff\x00', b'x' * 999 + b'\x00')
 _NUMBERS = (float('nan'), float('inf'), -float('inf'), 1e308, -1.7e308, -0.0, 5e-324, 3.2, -6.3)
-_REPRESENTATIONS = (b'\x00\x00\x00\x00', b'\x00\x01\x00\x03', b'\x00\x02\x00\x00',
-                    b'\x00\x03\x00\x00', b'\x00\x06\x00\x00', b'\x00\x07\x00\x00',
-                    b'\x00\x08\x00\x00', b'\x00\x0a\x00\x00', b'\xff\xff\xff\xff',
-                    b'\x01\x00\x00\x00')
+_REPRESENTATIONS = (
+    b'\x00\x00\x00\x00',
+    b'\x00\x01\x00\x03',
+    b'\x00\x02\x00\x00',
+    b'\x00\x03\x00\x00',
+    b'\x00\x06\x00\x00',
+    b'\x00\x07\x00\x00',
+    b'\x00\x08\x00\x00',
+    b'\x00\x0a\x00\x00',
+    b'\xff\xff\xff\xff',
+    b'\x01\x00\x00\x00',
+)
 
 
 def streams():
@@ -28,9 +47,12 @@ def streams():
     drawing differ in their last message.
 
     """
-    return seeds(8).map(lambda drawn: [
-        [_message(random.Random(seed), CLOCK + i * PERIOD) for i, seed in enumerate(each)]
-        for each in siblings(drawn)])
+    return seeds(8).map(
+        lambda drawn: [
+            [_message(random.Random(seed), CLOCK + i * PERIOD) for i, seed in enumerate(each)]
+            for each in siblings(drawn)
+        ]
+    )
 
 
 def _message(rng, clock):
@@ -49,7 +71,7 @@ def _parts(rng, clock):
     stamp = rng.choice((0, clock, clock, clock - rng.randrange(2 * 10**8), rng.randrange(2**63)))
     stamp = stamp // 10**9 % 2**31, stamp % 10**9
     if rng.random() < 0.1:
-        stamp = rng.randint(-2**31, 2**31 - 1), rng.randrange(2**32)
+        stamp = rng.randint(-(2**31), 2**31 - 1), rng.randrange(2**32)
     return stamp, rng.choice(_FRAMES), names, [_values(rng, len(names)) for _ in range(3)]
 
 

@@ -17,8 +17,9 @@ def _cut(rng, data, start, end):
 
 
 def _flip(rng, data, start, end):
-    return data[:start] + bytes(byte ^ 1 << rng.randrange(8) for byte in data[start:end]) \
-        + data[end:]
+    return (
+        data[:start] + bytes(byte ^ 1 << rng.randrange(8) for byte in data[start:end]) + data[end:]
+    )
 
 
 def _remove(rng, data, start, end):

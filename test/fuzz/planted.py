@@ -23,8 +23,10 @@ from .__main__ import be_strict
 from .cdr import joint_state
 
 _TEXT = description_door.bases()[0].encode()
-_STATES = [joint_states.right(random.Random(i), joint_states.CLOCK + i * joint_states.PERIOD)
-           for i in range(3)]
+_STATES = [
+    joint_states.right(random.Random(i), joint_states.CLOCK + i * joint_states.PERIOD)
+    for i in range(3)
+]
 _CUT = _STATES[0][:-30]
 # Its count of positions, behind those of the frame, the names and their lengths, is not true.
 _LYING = [joint_state((5, 0), b'base\x00', [b'elbow\x00'], ([0.5], [], []), lie=(3, 2**28))]
@@ -64,24 +66,47 @@ PLANTED = {
     'a file is opened and the error caught': (read, 'check_text', _open_and_go_on, _TEXT),
     'a socket is opened': (read, 'check_text', lambda text: socket.socket(), _TEXT),
     'something is imported': (
-        read, 'check_text', lambda text: importlib.import_module('tabnanny'), _TEXT),
+        read,
+        'check_text',
+        lambda text: importlib.import_module('tabnanny'),
+        _TEXT,
+    ),
     'another library logs': (read, 'check_text', lambda text: logging.error('dear me'), _TEXT),
     'an exception of another kind': (read, 'check_text', lambda text: {}[0], _TEXT),
     'a message of two lines': (read, 'structure_problems', lambda robot: ['a\nb'], _TEXT),
     'a message without end': (read, 'structure_problems', lambda robot: ['a' * 99_999], _TEXT),
     'a mass matrix that is not finite': (
-        description_door.RobotModel, 'mass_matrix', lambda *_: np.array(np.inf), _TEXT),
+        description_door.RobotModel,
+        'mass_matrix',
+        lambda *_: np.array(np.inf),
+        _TEXT,
+    ),
     'nothing in the states': (joint_state_reader, 'sys', joint_state_reader.sys, _STATES),
     'rclpy prints': (joint_state_reader, 'end_of_names', lambda data: 0, _LYING),
     'a cut message is read': (
-        _Reader, '_learn', lambda self, data: _good_learn(self, _STATES[1]), [_CUT]),
+        _Reader,
+        '_learn',
+        lambda self, data: _good_learn(self, _STATES[1]),
+        [_CUT],
+    ),
     'a number is wrong': (
-        _Reader, '_measure', lambda self, data: _reversed(_good_measure(self, data)), _STATES),
+        _Reader,
+        '_measure',
+        lambda self, data: _reversed(_good_measure(self, data)),
+        _STATES,
+    ),
     'a number is wrong in a state like the last': (
-        _Reader, '_as_before', lambda self, data: _reversed(_good_as_before(self, data)),
-        _STATES),
+        _Reader,
+        '_as_before',
+        lambda self, data: _reversed(_good_as_before(self, data)),
+        _STATES,
+    ),
     'a good message is refused': (
-        joint_state_reader, 'end_of_names', lambda data: _good_end(data[:-8]), _STATES),
+        joint_state_reader,
+        'end_of_names',
+        lambda data: _good_end(data[:-8]),
+        _STATES,
+    ),
     'a refused message moves a joint': (JointStateBuffer, 'update', _refuse, _STATES),
     'a position that is not finite': (JointStateBuffer, 'update', _spoil, _STATES),
 }

@@ -20,9 +20,11 @@ def print_results(console, results, seed):
         console.print(_answers(result))
     for result in results:
         for finding in result.findings.values():
-            console.print(f'[bold red]FOUND[/] in {result.name}: {escape(finding.error[:300])}\n'
-                          f'  at {escape(finding.where)}\n  again: make fuzz '
-                          f"ARGS='--replay {escape(str(finding.path))}'")
+            console.print(
+                f'[bold red]FOUND[/] in {result.name}: {escape(finding.error[:300])}\n'
+                f'  at {escape(finding.where)}\n  again: make fuzz '
+                f"ARGS='--replay {escape(str(finding.path))}'"
+            )
 
 
 def _answers(result):
@@ -32,19 +34,23 @@ def _answers(result):
     for answer, count in common[:_ANSWERS]:
         table.add_row(escape(answer), str(count))
     if len(common) > _ANSWERS:
-        table.add_row(f'{len(common) - _ANSWERS} other ways',
-                      str(sum(count for _, count in common[_ANSWERS:])))
+        table.add_row(
+            f'{len(common) - _ANSWERS} other ways',
+            str(sum(count for _, count in common[_ANSWERS:])),
+        )
     return table
 
 
 def _taken(result):
-    return str(sum(count for answer, count in result.answers.items()
-                   if answer.startswith('taken')))
+    return str(
+        sum(count for answer, count in result.answers.items() if answer.startswith('taken'))
+    )
 
 
 def _refused(result):
-    return str(sum(count for answer, count in result.answers.items()
-                   if not answer.startswith('taken')))
+    return str(
+        sum(count for answer, count in result.answers.items() if not answer.startswith('taken'))
+    )
 
 
 _FIGURES = (

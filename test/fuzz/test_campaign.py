@@ -13,9 +13,14 @@ from fuzz.campaign import Campaign
 def door(check):
     """Return a door for numbers."""
     return SimpleNamespace(
-        NAME='a door', SUFFIX='.txt', check=check, warm_up=lambda: None, from_bytes=int,
+        NAME='a door',
+        SUFFIX='.txt',
+        check=check,
+        warm_up=lambda: None,
+        from_bytes=int,
         inputs=lambda: st.integers(0, 10**9).map(lambda number: [number]),
-        to_bytes=lambda data: str(data).encode())
+        to_bytes=lambda data: str(data).encode(),
+    )
 
 
 def run(check, folder, inputs=200, seed=7):
@@ -44,6 +49,7 @@ def test_an_exception_is_a_finding_made_small_and_written_down(tmp_path):
         if data > 999:
             raise KeyError('far too much')
         return ['small']
+
     result = run(check, tmp_path)
     [(where, finding)] = result.findings.items()
     assert where.startswith('test_campaign.py:')
@@ -58,6 +64,7 @@ def test_a_warning_is_a_finding(tmp_path):
     def check(data):
         warnings.warn('overflow', RuntimeWarning, stacklevel=1)
         return []
+
     [finding] = run(check, tmp_path).findings.values()
     assert finding.error == 'RuntimeWarning: overflow'
 
@@ -70,6 +77,7 @@ def test_what_fails_now_and_then_is_a_finding(tmp_path):
         if len(calls) == 50:
             raise KeyError('once')
         return []
+
     [finding] = run(check, tmp_path).findings.values()
     assert finding.error.startswith("KeyError: 'once' (Flaky")
 
@@ -82,6 +90,7 @@ def test_an_input_that_keeps_the_processor_is_a_finding(tmp_path, monkeypatch):
         while time.process_time() < end:
             pass
         return []
+
     result = run(check, tmp_path)
     assert result.findings['slow'].path.read_text() == '0'
     assert result.slowest > 0.01
@@ -94,6 +103,7 @@ def test_an_input_that_never_ends_is_given_up(tmp_path, monkeypatch):
         while data == 0:
             pass
         return []
+
     result = run(check, tmp_path)
     assert result.findings['hangs'].path.read_text() == '0'
     assert result.answers['given up'] >= 1

@@ -10,8 +10,13 @@ TEST = Path(__file__).parents[1]
 
 def fuzz(*arguments):
     """Run the fuzz target in a process of its own."""
-    return subprocess.run([sys.executable, '-m', 'fuzz', *map(str, arguments)], text=True,
-                          capture_output=True, cwd=TEST, check=False)
+    return subprocess.run(
+        [sys.executable, '-m', 'fuzz', *map(str, arguments)],
+        text=True,
+        capture_output=True,
+        cwd=TEST,
+        check=False,
+    )
 
 
 def test_two_thousand_inputs_find_nothing(tmp_path):

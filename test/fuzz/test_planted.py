@@ -35,8 +35,13 @@ NOTICED = {
 @pytest.fixture(scope='module')
 def said():
     """Return what the doors say of each defect."""
-    run = subprocess.run([sys.executable, '-m', 'fuzz.planted'], capture_output=True, text=True,
-                         cwd=TEST, check=False)
+    run = subprocess.run(
+        [sys.executable, '-m', 'fuzz.planted'],
+        capture_output=True,
+        text=True,
+        cwd=TEST,
+        check=False,
+    )
     assert run.returncode == 0, run.stderr
     return json.loads(run.stdout)
 

@@ -14,8 +14,13 @@ import numpy as np
 import pytest
 
 
-@given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1),
-                          st.floats(1e-3, 5)), min_size=1, max_size=6))
+@given(
+    st.lists(
+        st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1), st.floats(1e-3, 5)),
+        min_size=1,
+        max_size=6,
+    )
+)
 def test_point_masses_are_always_physical(points):
     matrix = sum(m * np.outer([x, y, z, 1], [x, y, z, 1]) for x, y, z, m in points)
     assert consistency_report(matrix).violations == ()
@@ -41,8 +46,10 @@ def test_a_tensor_that_is_not_positive_is_named():
 def test_asymmetry_and_nan_are_named():
     matrix = pseudo_inertia(1.0, [0, 0, 0], np.eye(3))
     matrix[0, 1] += 0.25
-    assert 'not symmetric: J and its transpose differ by 0.25' in (
-        consistency_report(matrix).violations[0])
+    assert (
+        'not symmetric: J and its transpose differ by 0.25'
+        in (consistency_report(matrix).violations[0])
+    )
     matrix[0, 0] = np.nan
     report = consistency_report(matrix)
     assert report.violations == ('J has entries that are not finite',)

@@ -27,10 +27,12 @@ def test_the_integral_over_the_box_is_the_body(seed):
     J = random_body(seed)
     found = equivalent_box(J)
     a, b, c = found.size
-    own = pseudo_inertia_by_integration(found.mass / (a * b * c), (-a / 2, a / 2),
-                                        (-b / 2, b / 2), (-c / 2, c / 2))
-    np.testing.assert_allclose(transform_pseudo_inertia(own, found.pose), J,
-                               rtol=0.0, atol=1e-12 * np.abs(J).max())
+    own = pseudo_inertia_by_integration(
+        found.mass / (a * b * c), (-a / 2, a / 2), (-b / 2, b / 2), (-c / 2, c / 2)
+    )
+    np.testing.assert_allclose(
+        transform_pseudo_inertia(own, found.pose), J, rtol=0.0, atol=1e-12 * np.abs(J).max()
+    )
     assert found.mass == J[3, 3]
     assert np.linalg.det(found.pose[:3, :3]) == pytest.approx(1.0)
     assert (np.diff(found.size) >= 0.0).all()
@@ -41,13 +43,15 @@ def test_mujoco_finds_the_same_axes_and_moments(seed):
     J = random_body(seed)
     found = equivalent_box(J)
     tensor = inertia_tensor_at_com(J)
-    text = ' '.join(f'{tensor[i, j]:.17g}'
-                    for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+    text = ' '.join(
+        f'{tensor[i, j]:.17g}' for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    )
     place = ' '.join(f'{x:.17g}' for x in J[:3, 3] / J[3, 3])
     model = mujoco.MjModel.from_xml_string(
         '<mujoco><compiler boundmass="0"/><worldbody><body><joint type="free"/>'
         f'<inertial pos="{place}" mass="{J[3, 3]:.17g}" fullinertia="{text}"/>'
-        '</body></worldbody></mujoco>')
+        '</body></worldbody></mujoco>'
+    )
     m, (a, b, c) = found.mass, found.size
     moments = m / 12.0 * np.array([b * b + c * c, a * a + c * c, a * a + b * b])
     assert np.sort(model.body_inertia[1]) == pytest.approx(np.sort(moments), rel=1e-9)
@@ -66,8 +70,10 @@ def test_a_box_is_its_own():
     assert found.pose[:3, 3] == pytest.approx(0.0)
 
 
-@pytest.mark.parametrize('tensor, flat', [
-    (np.zeros((3, 3)), 3), (np.diag([0.0, 0.1, 0.1]), 2), (np.diag([0.1, 0.1, 0.2]), 1)])
+@pytest.mark.parametrize(
+    'tensor, flat',
+    [(np.zeros((3, 3)), 3), (np.diag([0.0, 0.1, 0.1]), 2), (np.diag([0.1, 0.1, 0.2]), 1)],
+)
 def test_flat_and_thin_bodies_have_no_thickness(tensor, flat):
     found = equivalent_box(pseudo_inertia(2.0, (0.1, -0.2, 0.3), tensor))
     assert np.isfinite(found.size).all()

@@ -72,18 +72,21 @@ def test_rpy_is_about_fixed_axes_x_then_y_then_z():
 
 def test_steiner_agrees_with_moving_the_pseudo_inertia():
     matrix = pseudo_inertia(2.5, COM, TENSOR)
-    np.testing.assert_allclose(axial_moments(matrix[:3, :3]), steiner(TENSOR, 2.5, COM),
-                               atol=1e-15)
+    np.testing.assert_allclose(
+        axial_moments(matrix[:3, :3]), steiner(TENSOR, 2.5, COM), atol=1e-15
+    )
 
 
 def test_moving_to_another_frame_keeps_mass_and_principal_moments():
     matrix = pseudo_inertia(2.5, COM, TENSOR)
     transform = _transform(1)
     moved = transform_pseudo_inertia(matrix, transform)
-    np.testing.assert_allclose(mass_and_com(moved)[1],
-                               transform[:3, :3] @ COM + transform[:3, 3], atol=1e-15)
-    np.testing.assert_allclose(np.linalg.eigvalsh(inertia_tensor_at_com(moved)),
-                               np.linalg.eigvalsh(TENSOR), rtol=1e-13)
+    np.testing.assert_allclose(
+        mass_and_com(moved)[1], transform[:3, :3] @ COM + transform[:3, 3], atol=1e-15
+    )
+    np.testing.assert_allclose(
+        np.linalg.eigvalsh(inertia_tensor_at_com(moved)), np.linalg.eigvalsh(TENSOR), rtol=1e-13
+    )
 
 
 def test_two_halves_of_a_cylinder_are_the_cylinder():
@@ -91,8 +94,9 @@ def test_two_halves_of_a_cylinder_are_the_cylinder():
     shift[2, 3] = 0.25
     back = np.linalg.inv(shift)
     half = cylinder(1.5, 0.1, 0.5)
-    np.testing.assert_allclose(combine([(half, shift), (half, back)]), cylinder(3.0, 0.1, 1.0),
-                               atol=1e-16)
+    np.testing.assert_allclose(
+        combine([(half, shift), (half, back)]), cylinder(3.0, 0.1, 1.0), atol=1e-16
+    )
 
 
 def test_nothing_combined_is_zero():
@@ -105,12 +109,15 @@ def test_a_body_without_mass_has_its_centre_at_the_origin():
     np.testing.assert_array_equal(com, np.zeros(3))
 
 
-@pytest.mark.parametrize('call, message', [
-    (lambda: planar_moments(np.eye(4)), r'expected shape \(3, 3\), got \(4, 4\)'),
-    (lambda: pseudo_inertia(1, [0, 0], TENSOR), r'centre of mass: expected shape \(3,\)'),
-    (lambda: mass_and_com(np.eye(3)), r'pseudo-inertia: expected shape \(4, 4\)'),
-    (lambda: transform_pseudo_inertia(np.eye(4), np.eye(3)), r'transform: expected shape'),
-])
+@pytest.mark.parametrize(
+    'call, message',
+    [
+        (lambda: planar_moments(np.eye(4)), r'expected shape \(3, 3\), got \(4, 4\)'),
+        (lambda: pseudo_inertia(1, [0, 0], TENSOR), r'centre of mass: expected shape \(3,\)'),
+        (lambda: mass_and_com(np.eye(3)), r'pseudo-inertia: expected shape \(4, 4\)'),
+        (lambda: transform_pseudo_inertia(np.eye(4), np.eye(3)), r'transform: expected shape'),
+    ],
+)
 def test_a_wrong_shape_is_an_error_that_says_what_was_expected(call, message):
     with pytest.raises(ArgumentError, match=message):
         call()

@@ -21,11 +21,15 @@ RELATIVE = 1e-12
 def test_the_closed_form_is_the_textbook_on_random_trees(seed):
     model = RobotModel.from_urdf(random_urdf(seed))
     q, qd = random_state(np.random.default_rng(seed), model)
-    expected = (textbook.mass_matrix(model.tree, q), textbook.coriolis_matrix(model.tree, q, qd),
-                textbook.gravity_torque(model.tree, q, model.gravity))
+    expected = (
+        textbook.mass_matrix(model.tree, q),
+        textbook.coriolis_matrix(model.tree, q, qd),
+        textbook.gravity_torque(model.tree, q, model.gravity),
+    )
     assert_terms_agree(model, qd, model.dynamics(q, qd), expected, RELATIVE)
     assert model.potential_energy(q) == pytest.approx(
-        textbook.potential_energy(model.tree, q, model.gravity), rel=RELATIVE, abs=1e-11)
+        textbook.potential_energy(model.tree, q, model.gravity), rel=RELATIVE, abs=1e-11
+    )
 
 
 @pytest.mark.parametrize('seed', range(5))
@@ -58,9 +62,15 @@ def test_interpreted_kernels_give_the_same_numbers_as_compiled_ones():
     answers = []
     for disable in ('0', '1'):
         environment['NUMBA_DISABLE_JIT'] = disable
-        run = subprocess.run([sys.executable, '-c', INTERPRETED], env=environment, check=True,
-                             capture_output=True, text=True)
+        run = subprocess.run(
+            [sys.executable, '-c', INTERPRETED],
+            env=environment,
+            check=True,
+            capture_output=True,
+            text=True,
+        )
         answers.append(np.array(run.stdout.split(), dtype=float))
     # Compiled code may fuse a multiplication and an addition, so the last bits may differ.
-    np.testing.assert_allclose(answers[0], answers[1], rtol=0,
-                               atol=1e-13 * np.abs(answers[1]).max())
+    np.testing.assert_allclose(
+        answers[0], answers[1], rtol=0, atol=1e-13 * np.abs(answers[1]).max()
+    )

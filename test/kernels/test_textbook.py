@@ -30,11 +30,11 @@ def test_derivatives_of_transforms_are_those_of_finite_differences(seed):
         body = int(np.flatnonzero(model.tree.coordinate == i)[0])
         change = np.zeros(n)
         change[i] = step
-        ahead, behind = (textbook.link_transforms(model.tree, q + sign * change)
-                         for sign in (1, -1))
+        ahead, behind = (
+            textbook.link_transforms(model.tree, q + sign * change) for sign in (1, -1)
+        )
         np.testing.assert_allclose(dA[:, body], (ahead[0] - behind[0]) / (2 * step), atol=1e-8)
-        np.testing.assert_allclose(ddA[:, :, body], (ahead[1] - behind[1]) / (2 * step),
-                                   atol=1e-8)
+        np.testing.assert_allclose(ddA[:, :, body], (ahead[1] - behind[1]) / (2 * step), atol=1e-8)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -44,7 +44,12 @@ def test_gravity_is_the_slope_of_the_potential(seed):
     q = np.random.default_rng(seed).uniform(-2, 2, n)
     G = textbook.gravity_torque(model.tree, q, model.gravity)
     step = 1e-6
-    slope = [(textbook.potential_energy(model.tree, q + step * e, model.gravity)
-              - textbook.potential_energy(model.tree, q - step * e, model.gravity)) / (2 * step)
-             for e in np.eye(n)]
+    slope = [
+        (
+            textbook.potential_energy(model.tree, q + step * e, model.gravity)
+            - textbook.potential_energy(model.tree, q - step * e, model.gravity)
+        )
+        / (2 * step)
+        for e in np.eye(n)
+    ]
     np.testing.assert_allclose(G, slope, atol=1e-6 * max(1.0, np.abs(G).max()))

@@ -47,6 +47,11 @@ assert after == before, {name: (before[name], count) for name, count in after.it
 
 def test_nothing_is_compiled_for_a_second_type():
     # It would take half a minute, in which the process seems to hang.
-    run = subprocess.run([sys.executable, '-c', ALL_THAT_COMPUTES], cwd=ROOT, text=True,
-                         capture_output=True, check=False)
+    run = subprocess.run(
+        [sys.executable, '-c', ALL_THAT_COMPUTES],
+        cwd=ROOT,
+        text=True,
+        capture_output=True,
+        check=False,
+    )
     assert run.returncode == 0, run.stderr

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from support.robots import random_urdf
 
-MASS = ('<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
-        '</inertial>')
+MASS = (
+    '<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+    '</inertial>'
+)
 
 
 def chain(*joints):
@@ -20,13 +22,13 @@ def chain(*joints):
         parts.append(
             f'<link name="l{i + 1}">{MASS.format(1)}</link><joint name="j{i}" type="{kind}">'
             f'<parent link="l{i}"/><child link="l{i + 1}"/><origin xyz="0 0 1"/>'
-            f'<axis xyz="0 0 1"/>{mimic and f"<mimic {mimic}/>"}</joint>')
+            f'<axis xyz="0 0 1"/>{mimic and f"<mimic {mimic}/>"}</joint>'
+        )
     return build_tree(read_urdf('<robot name="r">' + ''.join(parts) + '</robot>'))
 
 
 def test_fixed_links_are_lumped_at_the_root_in_the_middle_and_at_the_tip():
-    tree = chain(('fixed', ''), ('revolute', ''), ('fixed', ''), ('prismatic', ''),
-                 ('fixed', ''))
+    tree = chain(('fixed', ''), ('revolute', ''), ('fixed', ''), ('prismatic', ''), ('fixed', ''))
     assert tree.body_names == tree.joint_names == ('j1', 'j3')
     assert tree.parent.tolist() == [-1, 0]
     np.testing.assert_array_equal(tree.inertia[:, 3, 3], [2, 2])
@@ -50,9 +52,11 @@ def test_a_body_is_the_sum_of_its_links():
     description = read_urdf(random_urdf(5))
     tree = build_tree(description)
     for body in range(len(tree.body_names)):
-        parts = [(link_pseudo_inertia(link.inertial), tree.links[link.name].placement)
-                 for link in description.links
-                 if link.inertial and tree.links[link.name].body == body]
+        parts = [
+            (link_pseudo_inertia(link.inertial), tree.links[link.name].placement)
+            for link in description.links
+            if link.inertial and tree.links[link.name].body == body
+        ]
         np.testing.assert_allclose(tree.inertia[body], combine(parts), atol=1e-14)
 
 
@@ -63,8 +67,11 @@ def test_parents_come_before_their_children():
 
 
 def test_a_chain_of_mimic_joints_is_resolved_to_its_leader():
-    tree = chain(('revolute', ''), ('revolute', 'joint="j0" multiplier="2" offset="0.5"'),
-                 ('revolute', 'joint="j1" multiplier="-3" offset="0.1"'))
+    tree = chain(
+        ('revolute', ''),
+        ('revolute', 'joint="j0" multiplier="2" offset="0.5"'),
+        ('revolute', 'joint="j1" multiplier="-3" offset="0.1"'),
+    )
     assert tree.joint_names == ('j0',)
     assert tree.body_names == ('j0', 'j1', 'j2')
     np.testing.assert_array_equal(tree.mimic_matrix, [[1], [2], [-6]])
@@ -73,9 +80,12 @@ def test_a_chain_of_mimic_joints_is_resolved_to_its_leader():
 
 
 def test_a_moving_body_without_mass_is_listed():
-    text = ('<robot name="r"><link name="a"/><link name="b"/><link name="c">' + MASS.format(1)
-            + '</link><joint name="j" type="revolute"><parent link="a"/><child link="b"/></joint>'
-            '<joint name="k" type="{}"><parent link="b"/><child link="c"/></joint></robot>')
+    text = (
+        '<robot name="r"><link name="a"/><link name="b"/><link name="c">'
+        + MASS.format(1)
+        + '</link><joint name="j" type="revolute"><parent link="a"/><child link="b"/></joint>'
+        '<joint name="k" type="{}"><parent link="b"/><child link="c"/></joint></robot>'
+    )
     warnings = build_tree(read_urdf(text.format('revolute'))).warnings
     assert any(warning.endswith('not compensated): b') for warning in warnings)
     # With its mass on a fixed link it is a body with mass.

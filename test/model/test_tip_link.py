@@ -14,25 +14,29 @@ def end_of(source):
     return build_tree(read_urdf(source)).tip_link
 
 
-@pytest.mark.parametrize('robot, link', [
-    ('ur_description/urdf/ur5_robot.urdf', 'tool0'),
-    ('ur_description/urdf/ur10_robot.urdf', 'tool0'),
-    ('panda_description/urdf/panda.urdf', 'panda_hand_tcp'),
-    ('xarm_description/urdf/xarm7.urdf', 'link_eef'),
-    ('z1_description/urdf/z1.urdf', 'gripperStator'),
-    ('kinova_description/robots/kinova.urdf', 'j2s6s200_end_effector'),
-    ('tiago_description/robots/tiago_no_hand.urdf', 'wrist_ft_tool_link'),
-    ('baxter_description/urdf/baxter.urdf', 'right_gripper'),
-    ('pr2_description/urdf/pr2.urdf', 'r_gripper_tool_frame'),
-    ('talos_data/robots/talos_full_v2.urdf', 'gripper_left_base_link'),
-    ('tiago_pro_description/robots/tiago_pro.urdf', 'gripper_left_base_link'),
-    ('romeo_description/urdf/romeo_small.urdf', 'l_gripper'),
-    ('anymal_b_simple_description/robots/anymal-kinova.urdf', 'j2s6s200_end_effector'),
-    ('so_arm_description/urdf/so101.urdf', 'gripper_frame_link'),
-    ('alex_description/urdf/alex_nub_hands.urdf', 'LeftGripperYawLink'),
-    ('alex_description/urdf/alex_sake_hands.urdf', 'LeftSakePalmLink'),
-    ('g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf', 'left_hand_palm_link'),
-    ('talos_data/robots/talos_left_arm.urdf', 'gripper_left_inner_single_link')])
+@pytest.mark.parametrize(
+    'robot, link',
+    [
+        ('ur_description/urdf/ur5_robot.urdf', 'tool0'),
+        ('ur_description/urdf/ur10_robot.urdf', 'tool0'),
+        ('panda_description/urdf/panda.urdf', 'panda_hand_tcp'),
+        ('xarm_description/urdf/xarm7.urdf', 'link_eef'),
+        ('z1_description/urdf/z1.urdf', 'gripperStator'),
+        ('kinova_description/robots/kinova.urdf', 'j2s6s200_end_effector'),
+        ('tiago_description/robots/tiago_no_hand.urdf', 'wrist_ft_tool_link'),
+        ('baxter_description/urdf/baxter.urdf', 'right_gripper'),
+        ('pr2_description/urdf/pr2.urdf', 'r_gripper_tool_frame'),
+        ('talos_data/robots/talos_full_v2.urdf', 'gripper_left_base_link'),
+        ('tiago_pro_description/robots/tiago_pro.urdf', 'gripper_left_base_link'),
+        ('romeo_description/urdf/romeo_small.urdf', 'l_gripper'),
+        ('anymal_b_simple_description/robots/anymal-kinova.urdf', 'j2s6s200_end_effector'),
+        ('so_arm_description/urdf/so101.urdf', 'gripper_frame_link'),
+        ('alex_description/urdf/alex_nub_hands.urdf', 'LeftGripperYawLink'),
+        ('alex_description/urdf/alex_sake_hands.urdf', 'LeftSakePalmLink'),
+        ('g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf', 'left_hand_palm_link'),
+        ('talos_data/robots/talos_left_arm.urdf', 'gripper_left_inner_single_link'),
+    ],
+)
 def test_public_arms_carry_with_their_tool_and_no_finger(robot, link):
     assert end_of(public_robot(robot)) == link
 
@@ -48,14 +52,15 @@ def test_a_robot_that_does_not_move_has_its_root():
 
 
 def test_a_camera_on_the_hand_is_no_tool():
-    camera = ('<link name="camera"/><joint name="c" type="fixed"><parent link="gripper"/>'
-              '<child link="camera"/></joint></robot>')
+    camera = (
+        '<link name="camera"/><joint name="c" type="fixed"><parent link="gripper"/>'
+        '<child link="camera"/></joint></robot>'
+    )
     assert end_of(arm().replace('</robot>', camera)) == 'gripper'
 
 
 def test_a_weightless_arm_ends_before_its_fingers_too():
-    robot = ElementTree.fromstring(public_robot(
-        'panda_description/urdf/panda.urdf').read_text())
+    robot = ElementTree.fromstring(public_robot('panda_description/urdf/panda.urdf').read_text())
     for link in robot.findall('link'):
         for inertial in link.findall('inertial'):
             link.remove(inertial)
@@ -63,8 +68,7 @@ def test_a_weightless_arm_ends_before_its_fingers_too():
 
 
 def test_fingers_that_are_fixed_to_a_wrist_make_it_no_finger():
-    robot = ElementTree.fromstring(public_robot(
-        'panda_description/urdf/panda.urdf').read_text())
+    robot = ElementTree.fromstring(public_robot('panda_description/urdf/panda.urdf').read_text())
     for joint in robot.findall('joint'):
         if 'finger' in joint.get('name'):
             joint.set('type', 'fixed')

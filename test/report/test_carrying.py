@@ -26,8 +26,10 @@ def test_a_pendulum_carries_what_its_limit_leaves():
     assert found.best > 100.0 * found.everywhere
 
 
-@pytest.mark.parametrize('robot, gravity', [
-    (UR5, (0.0, 0.0, -9.81)), (XARM7, (0.0, 0.0, -9.81)), (XARM7, (9.81, 0.0, 0.0))])
+@pytest.mark.parametrize(
+    'robot, gravity',
+    [(UR5, (0.0, 0.0, -9.81)), (XARM7, (0.0, 0.0, -9.81)), (XARM7, (9.81, 0.0, 0.0))],
+)
 def test_it_holds_at_a_hundred_thousand_positions_and_a_little_more_does_not(robot, gravity):
     report = make_report(public_robot(robot), gravity=gravity)
     found, model = report.payload, report.model
@@ -45,8 +47,9 @@ def test_it_holds_at_a_hundred_thousand_positions_and_a_little_more_does_not(rob
 
 
 def test_it_does_not_depend_on_the_seed():
-    masses = [payload(public_robot(XARM7), seed=seed, samples=1000).everywhere
-              for seed in range(5)]
+    masses = [
+        payload(public_robot(XARM7), seed=seed, samples=1000).everywhere for seed in range(5)
+    ]
     assert max(masses) - min(masses) < 1e-5 * max(masses)
 
 

@@ -82,9 +82,14 @@ def brute_force(path, seed):
 
             def loss(x, sign=sign, joint=joint):
                 return -sign * gravity(oracle, names, x)[joint]
-            answer = optimize.minimize(loss, start, method='L-BFGS-B',
-                                       bounds=list(zip(lower, upper, strict=True)),
-                                       options={'ftol': 1e-14, 'gtol': 1e-9})
+
+            answer = optimize.minimize(
+                loss,
+                start,
+                method='L-BFGS-B',
+                bounds=list(zip(lower, upper, strict=True)),
+                options={'ftol': 1e-14, 'gtol': 1e-9},
+            )
             best = max(best, -answer.fun)
         largest.append(best)
     return names, np.array(largest)
@@ -112,11 +117,16 @@ def test_what_is_found_is_there(robot):
 
 @pytest.mark.parametrize('robot', [UR5, PANDA, XARM7])
 def test_it_hardly_depends_on_the_seed(robot):
-    largest = np.array([[abs(torque) for _, torque in study(public_robot(robot), 4096, seed).worst]
-                        for seed in range(6)])
+    largest = np.array(
+        [
+            [abs(torque) for _, torque in study(public_robot(robot), 4096, seed).worst]
+            for seed in range(6)
+        ]
+    )
     spread = np.ptp(largest, axis=0)
-    sampled = np.array([np.abs(study(public_robot(robot), 4096, seed).torques).max(axis=0)
-                        for seed in range(6)])
+    sampled = np.array(
+        [np.abs(study(public_robot(robot), 4096, seed).torques).max(axis=0) for seed in range(6)]
+    )
     # The samples alone spread by up to some percent.
     assert (spread <= 1e-6 * largest.max(axis=0)).all()
     assert (sampled <= largest.min(axis=0) + 1e-9).all()
@@ -127,17 +137,21 @@ def test_it_hardly_depends_on_the_seed(robot):
 def test_of_several_tops_the_highest_is_found_from_every_seed(robot):
     # From the best samples alone some seeds ended 0.6 % below the top here.
     text = random_urdf(robot, joints=8)
-    largest = np.array([[abs(torque) for _, torque in study(text, 2000, seed).worst]
-                        for seed in range(3)])
-    np.testing.assert_allclose(largest, np.broadcast_to(largest.max(axis=0), largest.shape),
-                               rtol=1e-6, atol=1e-9)
+    largest = np.array(
+        [[abs(torque) for _, torque in study(text, 2000, seed).worst] for seed in range(3)]
+    )
+    np.testing.assert_allclose(
+        largest, np.broadcast_to(largest.max(axis=0), largest.shape), rtol=1e-6, atol=1e-9
+    )
 
 
 def test_joints_that_mimic_are_followed():
     # Two equal links in a plane; the second turns twice as far as the first.
     text = arm((2.0, 1.5), (0.4, 0.3), tool=False, axes=('0 -1 0',) * 2, limits=(-3, 3))
-    text = text.replace('name="joint2" type="revolute">',
-                        'name="joint2" type="revolute"><mimic joint="joint1" multiplier="2"/>')
+    text = text.replace(
+        'name="joint2" type="revolute">',
+        'name="joint2" type="revolute"><mimic joint="joint1" multiplier="2"/>',
+    )
     q = np.linspace(-3.0, 3.0, 600_001)
     # V = g (m1 l1/2 sin q + m2 (l1 sin q + l2/2 sin 3 q)), G = dV/dq.
     torque = G * ((2.0 * 0.2 + 1.5 * 0.4) * np.cos(q) + 1.5 * 0.15 * 3.0 * np.cos(3.0 * q))

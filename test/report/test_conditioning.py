@@ -13,7 +13,8 @@ def test_the_numbers_are_those_of_numpy():
     report = make_report(public_robot(UR5), samples=400)
     found, model = report.conditioning, report.model
     assert np.linalg.cond(model.mass_matrix(np.array(found.position))) == (
-        pytest.approx(found.worst, rel=1e-6))
+        pytest.approx(found.worst, rel=1e-6)
+    )
     q = np.random.default_rng(5).uniform(-np.pi, np.pi, (3000, 6))
     numbers = np.linalg.cond(model.mass_matrix(q))
     assert np.median(numbers) == pytest.approx(found.median, rel=0.1)

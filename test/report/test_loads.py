@@ -34,7 +34,8 @@ def test_the_curve_goes_through_the_worst_place():
     found = load(arm(), 1)
     assert found.curve_positions[0] == -2.5 and found.curve_positions[-1] == 2.5
     assert np.interp(found.position[1], found.curve_positions, found.curve_torques) == (
-        pytest.approx(found.worst, rel=1e-3))
+        pytest.approx(found.worst, rel=1e-3)
+    )
     assert np.abs(found.curve_torques).max() <= found.magnitude * (1.0 + 1e-12)
 
 
@@ -42,8 +43,11 @@ def test_a_kilogram_is_what_a_payload_of_a_kilogram_adds():
     study = Study.begin(read_urdf(public_robot(PANDA)), (0.0, 0.0, -9.81), 200, 1)
     model, point = study.model, (0.02, -0.03, 0.1)
     loaded = model.with_payload('panda_hand', 1.0, point).gravity_torque(study.positions)
-    np.testing.assert_allclose(per_kilogram(model, study.positions, 'panda_hand', point),
-                               loaded - study.torques, atol=1e-11)
+    np.testing.assert_allclose(
+        per_kilogram(model, study.positions, 'panda_hand', point),
+        loaded - study.torques,
+        atol=1e-11,
+    )
 
 
 def test_what_is_left_brings_the_joint_to_its_limit():
@@ -71,8 +75,10 @@ def test_what_is_only_rounding_is_zero():
 
 
 def test_a_mass_that_does_not_turn_a_joint_leaves_no_trillion_of_kilograms():
-    for name in ('anymal_b_simple_description/robots/anymal-kinova.urdf',
-                 'tiago_description/robots/tiago.urdf'):
+    for name in (
+        'anymal_b_simple_description/robots/anymal-kinova.urdf',
+        'tiago_description/robots/tiago.urdf',
+    ):
         for joint in make_report(public_robot(name), samples=200).joints:
             if joint.gravity is not None:
                 left = joint.gravity.payload_left

@@ -20,18 +20,27 @@ WARNED = changed(arm(), 'link2', mass=0.007)
 @pytest.fixture
 def robot(tmp_path):
     """Return a function that writes a robot and returns its path."""
+
     def write(text):
         path = tmp_path / 'my robot.urdf'
         path.write_text(text)
         return str(path)
+
     return write
 
 
 def run(*arguments, code=None, **options):
     """Start the program in a process of its own."""
     command = ['-m', 'dynamics_node.report'] if code is None else ['-c', code]
-    return subprocess.run([sys.executable, *command, *map(str, arguments)], cwd=ROOT,
-                          capture_output=True, text=True, timeout=120, check=False, **options)
+    return subprocess.run(
+        [sys.executable, *command, *map(str, arguments)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        **options,
+    )
 
 
 def test_it_prints_tables_and_ends_with_the_verdict(robot, capsys):
@@ -44,10 +53,25 @@ def test_it_prints_tables_and_ends_with_the_verdict(robot, capsys):
     assert '\x1b' not in printed.out
 
 
-@pytest.mark.parametrize('text, strict, code', [
-    (arm(), True, 0), (arm(tool=False), True, 0), (WARNED, True, 1), (BROKEN, True, 1),
-    (WARNED, False, 0), (BROKEN, False, 0)], ids=[
-        'clean', 'a note', 'a warning', 'refused', 'a warning, not strict', 'refused, not strict'])
+@pytest.mark.parametrize(
+    'text, strict, code',
+    [
+        (arm(), True, 0),
+        (arm(tool=False), True, 0),
+        (WARNED, True, 1),
+        (BROKEN, True, 1),
+        (WARNED, False, 0),
+        (BROKEN, False, 0),
+    ],
+    ids=[
+        'clean',
+        'a note',
+        'a warning',
+        'refused',
+        'a warning, not strict',
+        'refused, not strict',
+    ],
+)
 @pytest.mark.parametrize('json_too', [False, True])
 def test_strict_fails_for_problems_and_warnings(robot, capsys, text, strict, code, json_too):
     options = ['--strict'] * strict + ['--json'] * json_too
@@ -63,10 +87,16 @@ def test_json_is_all_that_is_printed(robot, capsys):
     assert (plain['format'], plain['verdict'], printed.err) == (1, 'refused', '')
 
 
-@pytest.mark.parametrize('text, words', [
-    (None, "'nowhere.urdf', which does not exist"), ('', 'it is empty'),
-    ('<robot', 'it is not XML'), ('<html/>', 'expected <robot>'),
-    ('<robot xmlns:xacro="http://ros.org/xacro"><xacro:a/></robot>', 'expand it first')])
+@pytest.mark.parametrize(
+    'text, words',
+    [
+        (None, "'nowhere.urdf', which does not exist"),
+        ('', 'it is empty'),
+        ('<robot', 'it is not XML'),
+        ('<html/>', 'expected <robot>'),
+        ('<robot xmlns:xacro="http://ros.org/xacro"><xacro:a/></robot>', 'expand it first'),
+    ],
+)
 def test_what_cannot_be_read_is_one_clear_error(robot, capsys, text, words):
     path = 'nowhere.urdf' if text is None else robot(text)
     assert main([path]) == 2
@@ -76,10 +106,17 @@ def test_what_cannot_be_read_is_one_clear_error(robot, capsys, text, words):
     assert words in printed.err
 
 
-@pytest.mark.parametrize('options, words', [
-    (['--payload-link', 'nobody'],
-     "link: 'nobody' is not a link of the robot; expected one of base, link1"),
-    (['--samples', '0'], 'samples: expected 1 to'), (['--seed', '-1'], 'seed: expected')])
+@pytest.mark.parametrize(
+    'options, words',
+    [
+        (
+            ['--payload-link', 'nobody'],
+            "link: 'nobody' is not a link of the robot; expected one of base, link1",
+        ),
+        (['--samples', '0'], 'samples: expected 1 to'),
+        (['--seed', '-1'], 'seed: expected'),
+    ],
+)
 def test_wrong_values_say_what_was_expected(robot, capsys, options, words):
     assert main([robot(arm()), *options]) == 2
     assert words in capsys.readouterr().err
@@ -97,8 +134,29 @@ def test_it_reads_standard_input(monkeypatch, capsys):
 
 
 def test_options_reach_the_report(robot, capsys):
-    assert main([robot(arm()), '--json', '--samples', '70', '--seed', '9', '--gravity', '0', '0',
-                 '-1.62', '--payload-link', 'link4', '--payload-point', '0', '0', '0.1']) == 0
+    assert (
+        main(
+            [
+                robot(arm()),
+                '--json',
+                '--samples',
+                '70',
+                '--seed',
+                '9',
+                '--gravity',
+                '0',
+                '0',
+                '-1.62',
+                '--payload-link',
+                'link4',
+                '--payload-point',
+                '0',
+                '0',
+                '0.1',
+            ]
+        )
+        == 0
+    )
     plain = json.loads(capsys.readouterr().out)
     assert (plain['samples'], plain['seed'], plain['gravity']) == (70, 9, [0.0, 0.0, -1.62])
     assert (plain['payload']['link'], plain['payload']['point']) == ('link4', [0.0, 0.0, 0.1])
@@ -116,20 +174,33 @@ def test_a_page_is_written_and_said(robot, tmp_path, capsys):
 
 def refusing(*names):
     """Return a program that is the report where some packages are not installed."""
-    return ('import sys\n'
-            'class Refuse:\n'
-            '    def find_spec(self, name, path=None, target=None):\n'
-            f'        if name.split(".")[0] in {names!r}:\n'
-            '            raise ModuleNotFoundError(f"No module named {name!r}", name=name)\n'
-            'sys.meta_path.insert(0, Refuse())\n'
-            'from dynamics_node.report.__main__ import main\n'
-            'sys.exit(main())\n')
+    return (
+        'import sys\n'
+        'class Refuse:\n'
+        '    def find_spec(self, name, path=None, target=None):\n'
+        f'        if name.split(".")[0] in {names!r}:\n'
+        '            raise ModuleNotFoundError(f"No module named {name!r}", name=name)\n'
+        'sys.meta_path.insert(0, Refuse())\n'
+        'from dynamics_node.report.__main__ import main\n'
+        'sys.exit(main())\n'
+    )
 
 
 def test_it_works_where_no_ros_is_installed():
-    answer = run(ARM7, '--samples', 200, code=refusing(
-        'rclpy', 'dynamics_interfaces', 'std_msgs', 'sensor_msgs', 'mujoco', 'matplotlib',
-        'plotly'))
+    answer = run(
+        ARM7,
+        '--samples',
+        200,
+        code=refusing(
+            'rclpy',
+            'dynamics_interfaces',
+            'std_msgs',
+            'sensor_msgs',
+            'mujoco',
+            'matplotlib',
+            'plotly',
+        ),
+    )
     assert (answer.returncode, answer.stderr) == (0, '')
     assert answer.stdout.strip().endswith('arm7: usable; 0 problems, 0 warnings, 0 notes')
 
@@ -148,28 +219,44 @@ def test_it_can_be_piped_into_head_and_into_a_file_of_another_encoding():
     assert (answer.returncode, answer.stderr) == (0, '') and 'kg m?' in answer.stdout
     whole = subprocess.run(
         f"'{sys.executable}' -m dynamics_node.report '{ARM7}' --json --samples 10 | head -n 1",
-        shell=True, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
+        shell=True,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
     assert (whole.stdout, whole.stderr) == ('{\n', '')
 
 
 def shell(command):
     """Run a line of bash in the checkout."""
-    return subprocess.run(['bash', '-c', command], cwd=ROOT, capture_output=True, text=True,
-                          timeout=120, check=False)
+    return subprocess.run(
+        ['bash', '-c', command], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False
+    )
 
 
-@pytest.mark.parametrize('text, options, code', [
-    (WARNED, '--strict --json', 1), (WARNED, '--strict', 1), (WARNED, '', 0),
-    (arm(), '--strict', 0)])
+@pytest.mark.parametrize(
+    'text, options, code',
+    [
+        (WARNED, '--strict --json', 1),
+        (WARNED, '--strict', 1),
+        (WARNED, '', 0),
+        (arm(), '--strict', 0),
+    ],
+)
 def test_its_exit_code_is_the_same_where_the_reader_has_read_enough(robot, text, options, code):
-    answer = shell(f"'{sys.executable}' -m dynamics_node.report '{robot(text)}' --samples 20 "
-                   f'{options} | (exec 0<&-; sleep 0.1); echo ${{PIPESTATUS[0]}}')
+    answer = shell(
+        f"'{sys.executable}' -m dynamics_node.report '{robot(text)}' --samples 20 "
+        f'{options} | (exec 0<&-; sleep 0.1); echo ${{PIPESTATUS[0]}}'
+    )
     assert (answer.stdout, answer.stderr) == (f'{code}\n', '')
 
 
 def test_it_reads_a_pipe_that_has_a_path(robot):
-    answer = shell(f"'{sys.executable}' -m dynamics_node.report <(cat '{robot(arm())}') "
-                   '--samples 20')
+    answer = shell(
+        f"'{sys.executable}' -m dynamics_node.report <(cat '{robot(arm())}') --samples 20"
+    )
     assert (answer.returncode, answer.stderr) == (0, '')
     assert 'arm: usable' in answer.stdout
 

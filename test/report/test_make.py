@@ -15,10 +15,15 @@ from support.robots import ARM7
 def test_a_path_a_text_and_bytes_give_the_same(tmp_path):
     path = tmp_path / 'my arm.urdf'
     path.write_text(arm())
-    reports = [make_report(source, samples=100)
-               for source in (path, str(path), arm(), arm().encode())]
+    reports = [
+        make_report(source, samples=100) for source in (path, str(path), arm(), arm().encode())
+    ]
     assert [report.source for report in reports] == [
-        str(path), str(path), 'URDF text', 'URDF text']
+        str(path),
+        str(path),
+        'URDF text',
+        'URDF text',
+    ]
     assert len({report.joints for report in reports}) == 1
 
 
@@ -30,10 +35,17 @@ def test_progress_grows_from_nothing_to_all():
     assert any('joint3' in what for _, what in told)
 
 
-@pytest.mark.parametrize('options, message', [
-    ({'gravity': (0, 0)}, 'gravity: expected three'), ({'samples': 0}, 'samples: expected 1 to'),
-    ({'seed': -1}, 'seed: expected'), ({'link': 'nobody'}, "link: 'nobody' is not"),
-    ({'point': (0, 1)}, 'point: expected three'), ({'point': (0, 0, np.nan)}, 'point')])
+@pytest.mark.parametrize(
+    'options, message',
+    [
+        ({'gravity': (0, 0)}, 'gravity: expected three'),
+        ({'samples': 0}, 'samples: expected 1 to'),
+        ({'seed': -1}, 'seed: expected'),
+        ({'link': 'nobody'}, "link: 'nobody' is not"),
+        ({'point': (0, 1)}, 'point: expected three'),
+        ({'point': (0, 0, np.nan)}, 'point'),
+    ],
+)
 def test_wrong_arguments_are_refused(options, message):
     with pytest.raises(ArgumentError, match=message):
         make_report(arm(), **options)
@@ -46,8 +58,10 @@ def test_what_is_no_urdf_is_refused(text):
 
 
 def test_gravity_is_along_the_vector_that_is_given():
-    down, up, none = (make_report(ARM7, samples=300, gravity=(0, 0, g)).joints[1].gravity
-                      for g in (-9.81, 9.81, 0.0))
+    down, up, none = (
+        make_report(ARM7, samples=300, gravity=(0, 0, g)).joints[1].gravity
+        for g in (-9.81, 9.81, 0.0)
+    )
     assert up.magnitude == pytest.approx(down.magnitude, rel=1e-6)
     assert none.worst == 0.0
 
@@ -56,7 +70,8 @@ def test_one_sample_is_enough():
     found = make_report(arm(), samples=1)
     many = make_report(arm(), samples=4000)
     assert found.joints[1].gravity.magnitude == pytest.approx(
-        many.joints[1].gravity.magnitude, rel=1e-6)
+        many.joints[1].gravity.magnitude, rel=1e-6
+    )
 
 
 def test_the_names_of_a_robot_do_no_harm():

@@ -10,10 +10,14 @@ from support.robots import ARM7
 
 def test_it_is_on_standard_error_and_only_on_a_terminal():
     master, slave = pty.openpty()
-    run = subprocess.Popen([sys.executable, '-m', 'dynamics_node.report', str(ARM7)],
-                           stdout=subprocess.PIPE, stderr=slave, text=True,
-                           # Where a CI runs there may be none, or one that cannot go back.
-                           env={**os.environ, 'TERM': 'xterm'})
+    run = subprocess.Popen(
+        [sys.executable, '-m', 'dynamics_node.report', str(ARM7)],
+        stdout=subprocess.PIPE,
+        stderr=slave,
+        text=True,
+        # Where a CI runs there may be none, or one that cannot go back.
+        env={**os.environ, 'TERM': 'xterm'},
+    )
     os.close(slave)
     shown = b''
     try:

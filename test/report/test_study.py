@@ -41,11 +41,13 @@ def test_another_inertial_is_that_of_another_urdf(study):
     inertial = read_urdf(changed(arm(), 'link3', mass=5.0)).links[3].inertial
     model = study.with_inertials({'link3': inertial})
     expected = RobotModel.from_urdf(changed(arm(), 'link3', mass=5.0))
-    np.testing.assert_allclose(model.gravity_torque(study.positions),
-                               expected.gravity_torque(study.positions), atol=1e-12)
+    np.testing.assert_allclose(
+        model.gravity_torque(study.positions), expected.gravity_torque(study.positions), atol=1e-12
+    )
     assert study.worst_with(model, 1)[1] != pytest.approx(study.worst[1][1], rel=1e-3)
-    np.testing.assert_allclose(study.with_inertials({}).gravity_torque(study.positions),
-                               study.torques, atol=1e-12)
+    np.testing.assert_allclose(
+        study.with_inertials({}).gravity_torque(study.positions), study.torques, atol=1e-12
+    )
 
 
 def test_the_joints_that_carry_a_link(study):
@@ -65,6 +67,7 @@ def test_no_compiler_is_started(monkeypatch):
 
     def refuse(*_):
         raise AssertionError('a compiler was started')
+
     monkeypatch.setattr(specialised, 'start', refuse)
     study = Study.begin(read_urdf(random_urdf(77, joints=5)), (0.0, 0.0, -9.81), 50_000, 1)
     for _ in range(5):

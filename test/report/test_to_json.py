@@ -9,8 +9,9 @@ from support.robots import ARM7
 
 
 def test_it_is_strict_json_and_comes_again():
-    texts = [json.dumps(to_json(make_report(ARM7, samples=200)), allow_nan=False)
-             for _ in range(2)]
+    texts = [
+        json.dumps(to_json(make_report(ARM7, samples=200)), allow_nan=False) for _ in range(2)
+    ]
     assert texts[0] == texts[1]
     plain = json.loads(texts[0])
     assert plain['format'] == 1 and 'model' not in plain
@@ -29,8 +30,14 @@ def test_numbers_are_not_rounded():
     assert plain['payload']['everywhere'] == report.payload.everywhere
 
 
-@pytest.mark.parametrize('text', [
-    changed(arm(), 'link2', mass=-1.0), arm().replace('revolute', 'planar', 1),
-    arm(effort='inf'), '<robot name="a"><link name="b"/></robot>'])
+@pytest.mark.parametrize(
+    'text',
+    [
+        changed(arm(), 'link2', mass=-1.0),
+        arm().replace('revolute', 'planar', 1),
+        arm(effort='inf'),
+        '<robot name="a"><link name="b"/></robot>',
+    ],
+)
 def test_what_is_missing_is_null(text):
     json.dumps(to_json(make_report(text, samples=50)), allow_nan=False)

@@ -9,6 +9,7 @@ import pytest
 def client():
     """Return a client of the node."""
     from support.processes import Client
+
     client = Client()
     yield client
     client.close()
@@ -18,6 +19,7 @@ def client():
 def start():
     """Return a function that starts the node with parameters."""
     from support.processes import NodeProcess
+
     with _starting(NodeProcess) as start:
         yield start
 
@@ -26,6 +28,7 @@ def start():
 def start_markers():
     """Return a function that starts the markers program with parameters."""
     from support.processes import MarkersProcess
+
     with _starting(MarkersProcess) as start:
         yield start
 
@@ -33,6 +36,7 @@ def start_markers():
 @contextlib.contextmanager
 def _starting(kind):
     with contextlib.ExitStack() as stack:  # which ends all, also when the end of one goes wrong
+
         def start(*remappings, **parameters):
             process = kind(*remappings, **parameters)
             stack.callback(process.close)
@@ -47,6 +51,7 @@ def shared():
     from support.domains import claim
     from support.processes import Client, NodeProcess
     from support.robots import ARM7
+
     with contextlib.ExitStack() as stack:
         # In a domain of its own: other tests here start nodes of the same name.
         with pytest.MonkeyPatch.context() as patch:

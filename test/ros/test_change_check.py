@@ -26,7 +26,7 @@ def change(before, after, urdf=ARM7):
     robot = Robot(RobotModel.from_urdf(urdf), ())
     before = check_all(before)
     robot.configure(before)
-    robot.buffer.update(0.0, list(robot.joint_names), Q[:len(robot.joint_names)])
+    robot.buffer.update(0.0, list(robot.joint_names), Q[: len(robot.joint_names)])
     values = check_all(after)
     gravity = GravityChange()
     gravity.begin(0.0, before['gravity'])
@@ -37,35 +37,59 @@ LIMITS = {'effort_limits': [1.0] * N}
 SCALED = {'effort_scale': [4.0] * N}
 
 
-@pytest.mark.parametrize('before, after', [
-    ({}, payload(1.0)), (payload(1.0), {}),
-    ({}, LIMITS), (payload(1.0), LIMITS | payload(1.0)),
-    # Stuck at its limit it is anyway: a base that tilts must be followed, and less be possible.
-    (payload(500.0), payload(499.0)), (payload(500.0), {}), (payload(500.0), payload(501.0)),
-    ({}, {'gravity': (4.0, 0.0, -9.0)}), ({'gravity': (0.0,) * 3}, {'gravity': (0.0,) * 3}),
-    ({}, {'effort_scale': [1.1] * N}), (SCALED, {}),
-], ids=str)
+@pytest.mark.parametrize(
+    'before, after',
+    [
+        ({}, payload(1.0)),
+        (payload(1.0), {}),
+        ({}, LIMITS),
+        (payload(1.0), LIMITS | payload(1.0)),
+        # It is at its limit anyway: a tilting base must be followed, and less be possible.
+        (payload(500.0), payload(499.0)),
+        (payload(500.0), {}),
+        (payload(500.0), payload(501.0)),
+        ({}, {'gravity': (4.0, 0.0, -9.0)}),
+        ({'gravity': (0.0,) * 3}, {'gravity': (0.0,) * 3}),
+        ({}, {'effort_scale': [1.1] * N}),
+        (SCALED, {}),
+    ],
+    ids=str,
+)
 def test_what_the_arm_can_follow_is_possible(before, after):
     change(before, after)
 
 
-@pytest.mark.parametrize('before, after, message', [
-    ({}, payload(500.0), 'above the limit: shoulder_pitch'),
-    # A joint at its limit is no excuse for the others.
-    ({'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2},
-     {'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2} | payload(500.0), 'shoulder_pitch'),
-    # Nor is what turns round there: the effort would go from one limit to the other.
-    (payload(500.0), payload(500.0, com=(0.0, 0.0, -3.0)), 'above the limit: shoulder_pitch: 109'),
-    ({}, SCALED, 'above the limit: shoulder_pitch'),
-    ({}, {'gravity': (0.0, 0.0, 9.81)}, 'points up .* set allow_upward_gravity'),
-    ({'allow_upward_gravity': True}, {'allow_upward_gravity': True, 'gravity': (0.0, 0.0, 9.81)},
-     'at most 30 degrees at once'),
-    ({}, {'effort_limits': [91.0] * N}, 'effort_limits of shoulder_yaw: 91, in the URDF 90'),
-    ({}, {'gravity': (9.81, 0.0, 0.0)}, 'at most 30 degrees at once'),
-    ({}, {'gravity': (0.0, 0.0, -15.0)}, 'at most 2 m/s'),
-    ({}, {'gravity': (0.0, 0.0, 0.0)}, 'not zero while output is on'),
-    ({'gravity': (0.0,) * 3}, {'gravity': DOWN}, 'not zero while output is on'),
-], ids=str)
+@pytest.mark.parametrize(
+    'before, after, message',
+    [
+        ({}, payload(500.0), 'above the limit: shoulder_pitch'),
+        # A joint at its limit is no excuse for the others.
+        (
+            {'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2},
+            {'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2} | payload(500.0),
+            'shoulder_pitch',
+        ),
+        # Nor is what turns round there: the effort would go from one limit to the other.
+        (
+            payload(500.0),
+            payload(500.0, com=(0.0, 0.0, -3.0)),
+            'above the limit: shoulder_pitch: 109',
+        ),
+        ({}, SCALED, 'above the limit: shoulder_pitch'),
+        ({}, {'gravity': (0.0, 0.0, 9.81)}, 'points up .* set allow_upward_gravity'),
+        (
+            {'allow_upward_gravity': True},
+            {'allow_upward_gravity': True, 'gravity': (0.0, 0.0, 9.81)},
+            'at most 30 degrees at once',
+        ),
+        ({}, {'effort_limits': [91.0] * N}, 'effort_limits of shoulder_yaw: 91, in the URDF 90'),
+        ({}, {'gravity': (9.81, 0.0, 0.0)}, 'at most 30 degrees at once'),
+        ({}, {'gravity': (0.0, 0.0, -15.0)}, 'at most 2 m/s'),
+        ({}, {'gravity': (0.0, 0.0, 0.0)}, 'not zero while output is on'),
+        ({'gravity': (0.0,) * 3}, {'gravity': DOWN}, 'not zero while output is on'),
+    ],
+    ids=str,
+)
 def test_what_would_throw_or_drop_it_is_refused(before, after, message):
     with pytest.raises(ParameterError, match=message):
         change(before, after)
@@ -80,8 +104,10 @@ def test_a_joint_keeps_its_limit():
 def test_the_payload_of_the_test_turns_the_torque_round():
     # So that the case above is what it says.
     model = RobotModel.from_urdf(ARM7)
-    G = [model.with_payload('hand', 500.0, com).gravity_torque(Q)[1]
-         for com in ((0.03, 0.0, 0.0), (0.0, 0.0, -3.0))]
+    G = [
+        model.with_payload('hand', 500.0, com).gravity_torque(Q)[1]
+        for com in ((0.03, 0.0, 0.0), (0.0, 0.0, -3.0))
+    ]
     assert G[0] < -90.0 and G[1] > 90.0
 
 

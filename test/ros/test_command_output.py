@@ -56,6 +56,7 @@ def became_active(client, action):
 
     def faults():
         return [output.reason for output in client.outputs[before:] if output.name == 'FAULT']
+
     client.until(lambda: is_active() or faults(), action)
     assert all('joint_states stale' in reason for reason in faults()), faults()
     return is_active()
@@ -87,7 +88,12 @@ def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(client, st
     duration = client.commands[-1][0] - client.commands[0][0]
     assert duration == pytest.approx(1.0, abs=0.4)
     assert [output.name for output in client.outputs] == [
-        'READY', 'STARTING', 'ACTIVE', 'STOPPING', 'READY']
+        'READY',
+        'STARTING',
+        'ACTIVE',
+        'STOPPING',
+        'READY',
+    ]
     client.commands.clear()
     client.during(0.5, publish)
     assert client.commands == []
@@ -117,10 +123,17 @@ def test_a_timeout_that_becomes_shorter_holds_at_once(client, start):
     start(robot_description_file=PENDULUM, state_timeout=10.0)
     client.record_commands()
     enabled(client, level(client))
-    request = SetParameters.Request(parameters=[Parameter(name='state_timeout', value=(
-        ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=0.2)))])
-    [result] = client.call(SetParameters, '/dynamics_node/set_parameters', request,
-                           level(client)).results
+    request = SetParameters.Request(
+        parameters=[
+            Parameter(
+                name='state_timeout',
+                value=(ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=0.2)),
+            )
+        ]
+    )
+    [result] = client.call(
+        SetParameters, '/dynamics_node/set_parameters', request, level(client)
+    ).results
     assert result.successful
     client.until(client.output_is('FAULT'), timeout=5.0)
     assert 'limit 0.200 s' in client.outputs[-1].reason
@@ -145,8 +158,13 @@ def test_parameters_set_without_end_do_not_put_the_watchdog_off(client):
     values = check_all({})
     output = CommandOutput(client.node, values, lambda: None)
     output.path.use(robot.buffer)
-    output.path.configure(time.monotonic(), output_settings(values), robot.compensation(values),
-                          _limiter(robot, values), robot.motion_limits(()))
+    output.path.configure(
+        time.monotonic(),
+        output_settings(values),
+        robot.compensation(values),
+        _limiter(robot, values),
+        robot.motion_limits(()),
+    )
     robot.buffer.update(time.monotonic(), ['hinge'], [0.0])
     output.enable()
     next_tick = output._watchdog.time_until_next_call
@@ -179,15 +197,21 @@ def test_joints_that_get_no_effort_are_named_when_they_fall_silent(client, start
     enabled(client, lambda: client.publish(arm.joint_names, q))
 
     def is_named():
-        return any('taken where last seen: upper_arm_roll' in status.message
-                   for message in statuses for status in message.status)
+        return any(
+            'taken where last seen: upper_arm_roll' in status.message
+            for message in statuses
+            for status in message.status
+        )
+
     client.until(is_named, lambda: client.publish(arm.joint_names[:2], q[:2]))
     assert client.outputs[-1].name == 'ACTIVE'
     process.send(signal.SIGINT)
     _, output = process.wait()
-    assert ('joint_states say nothing of upper_arm_roll, elbow_pitch, forearm_roll, wrist_pitch, '
-            'wrist_roll, left_finger_slide: the efforts take such a joint where it was last '
-            'measured') in output
+    assert (
+        'joint_states say nothing of upper_arm_roll, elbow_pitch, forearm_roll, wrist_pitch, '
+        'wrist_roll, left_finger_slide: the efforts take such a joint where it was last '
+        'measured'
+    ) in output
     assert output.count('say nothing of') == 1
 
 
@@ -203,7 +227,8 @@ def test_efforts_are_clamped_to_the_limit_and_not_for_long(client, start):
     assert max(effort for _, [effort] in client.commands) == 4.0
     client.until(client.output_is('FAULT'), publish)
     assert client.outputs[-1].reason == (
-        'effort above its limit for 2 s: hinge: 10.3005 limited to 4')
+        'effort above its limit for 2 s: hinge: 10.3005 limited to 4'
+    )
     assert client.commands[-1][1] == [0.0]
 
 
@@ -214,10 +239,16 @@ def test_garbage_while_active_never_reaches_the_command(client, start):
     enabled(client, publish)
 
     # One at a time: the queue has one place, so of several at once only the last arrives.
-    sequence = itertools.cycle([
-        publish, lambda: client.publish(['hinge'], [np.nan]),
-        publish, lambda: client.publish(['hinge'], [1.0, 2.0]),
-        publish, lambda: client.publish(['hinge', 'hinge'], [1.0, 2.0])])
+    sequence = itertools.cycle(
+        [
+            publish,
+            lambda: client.publish(['hinge'], [np.nan]),
+            publish,
+            lambda: client.publish(['hinge'], [1.0, 2.0]),
+            publish,
+            lambda: client.publish(['hinge', 'hinge'], [1.0, 2.0]),
+        ]
+    )
     # ACTIVE may be heard before the last command of the ramp: they are two topics.
     client.until(lambda: client.commands[-1][1] == [pytest.approx(HOLD)], publish)
     client.commands.clear()
@@ -268,6 +299,7 @@ def test_the_command_follows_the_order_of_joints_and_hold_keeps_the_last_effort(
 
     def publish():
         client.publish(arm.joint_names, q)
+
     enabled(client, publish)
     client.during(0.2, publish)
     np.testing.assert_allclose(client.commands[-1][1], expected, rtol=1e-12, atol=1e-12)
@@ -337,8 +369,9 @@ def test_enabling_is_refused_while_others_publish(client, start):
     client.until(lambda: client.node.count_publishers(f'/{TOPIC}') == 1, publish)
     answers = []
     # The node may hear of it a moment later than this client.
-    client.until(lambda: answers.append(client.enable(True, publish)) or answers[-1].success,
-                 publish)
+    client.until(
+        lambda: answers.append(client.enable(True, publish)) or answers[-1].success, publish
+    )
     assert 'but nothing listens there' in answers[-1].message
 
 
@@ -370,6 +403,7 @@ def test_two_broadcasters_at_the_same_moment_do_not_starve_each_other(client, st
     def publish():
         client.publish(arm.joint_names[:7], arm.neutral_position[:7])
         gripper.publish(JointState(name=['left_finger_slide'], position=[0.01]))
+
     client.until(gripper.get_subscription_count, publish)
     enabled(client, publish)
     client.during(1.0, publish)
@@ -382,8 +416,9 @@ def test_a_parameter_of_an_unknown_type_does_not_end_the_process(client, start):
     client.record_commands()
     publish = level(client)
     enabled(client, publish)
-    request = SetParameters.Request(parameters=[
-        Parameter(name='gravity', value=ParameterValue(type=77))])
+    request = SetParameters.Request(
+        parameters=[Parameter(name='gravity', value=ParameterValue(type=77))]
+    )
     service = client.node.create_client(SetParameters, '/dynamics_node/set_parameters')
     client.until(service.service_is_ready, publish)
     service.call_async(request)
@@ -416,6 +451,7 @@ def test_a_flood_of_calls_does_not_take_the_arms_commands(client, start):
     def publish():
         level(client)()
         published.append(1)
+
     enabled(client, publish)
     service = client.node.create_client(GetDynamics, '/dynamics_node/get_dynamics')
     client.until(service.service_is_ready, publish)
@@ -423,8 +459,10 @@ def test_a_flood_of_calls_does_not_take_the_arms_commands(client, start):
     def ask(future=None):
         if future is not None:
             answers.append(future.result().success)
-        service.call_async(GetDynamics.Request(joint_names=['hinge'] * (len(answers) % 3))
-                           ).add_done_callback(ask)
+        service.call_async(
+            GetDynamics.Request(joint_names=['hinge'] * (len(answers) % 3))
+        ).add_done_callback(ask)
+
     for _ in range(20):  # in flight at any time
         ask()
     client.during(0.3, publish)
@@ -497,6 +535,7 @@ def test_nothing_is_enabled_after_a_signal_however_often_it_is_asked_for(client,
 
     def ask(future=None):
         service.call_async(SetBool.Request(data=True)).add_done_callback(ask)
+
     for _ in range(4):  # in flight at any time
         ask()
     client.during(0.2, publish)
@@ -519,6 +558,7 @@ def test_a_process_that_stood_still_goes_on_by_a_fault_and_not_by_a_step(client,
 
     def moved():
         client.publish(['hinge'], [upright], [0.0])
+
     client.during(1.0, moved)
     client.commands.clear()
     process.send(signal.SIGCONT)
@@ -551,11 +591,18 @@ def test_a_payload_that_comes_while_active_goes_out_over_the_start_ramp(client, 
     publish = level(client)
     enabled(client, publish)
     client.until(lambda: client.commands[-1][1] == [pytest.approx(HOLD)], publish)
-    request = SetParameters.Request(parameters=[Parameter(name='compensate.gravity', value=(
-        ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=False)))])
+    request = SetParameters.Request(
+        parameters=[
+            Parameter(
+                name='compensate.gravity',
+                value=(ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=False)),
+            )
+        ]
+    )
     client.commands.clear()
-    [result] = client.call(SetParameters, '/dynamics_node/set_parameters', request,
-                           publish).results
+    [result] = client.call(
+        SetParameters, '/dynamics_node/set_parameters', request, publish
+    ).results
     assert result.successful
     client.until(lambda: client.commands[-1][1] == [pytest.approx(0.0)], publish)
     efforts = np.array([effort for _, [effort] in client.commands])

@@ -21,9 +21,11 @@ def listeners():
         for key, value in parameters.items():
             client.node.declare_parameter(key, value)
         client.subscription = client.node.create_subscription(
-            Float64MultiArray, 'efforts', lambda _: None, 1)
+            Float64MultiArray, 'efforts', lambda _: None, 1
+        )
         clients.append(client)
         return client
+
     yield start
     for client in clients:
         client.close()
@@ -31,9 +33,11 @@ def listeners():
 
 def spinning(others):
     """Return an action that lets the others answer."""
+
     def spin():
         for other in others:
             other.executor.spin_once(timeout_sec=0.0)
+
     return spin
 
 
@@ -46,7 +50,9 @@ def watched(client, others, deaf=()):
     def heard():
         unit.update()
         return names == set(unit.listeners) and all(
-            unit.listeners[name].has_answered for name in answering)
+            unit.listeners[name].has_answered for name in answering
+        )
+
     client.until(heard, spinning(others))
     return unit
 
@@ -59,29 +65,40 @@ def test_without_a_listener_there_is_nothing_to_wait_for(client):
     assert unit.refusals(JOINTS) == unit.notes() == []
 
 
-@pytest.mark.parametrize('parameters', [
-    {'joints': list(JOINTS), 'interface_name': 'effort'}, {'joints': list(JOINTS)}, {},
-    {'joints': 7}])
+@pytest.mark.parametrize(
+    'parameters',
+    [
+        {'joints': list(JOINTS), 'interface_name': 'effort'},
+        {'joints': list(JOINTS)},
+        {},
+        {'joints': 7},
+    ],
+)
 def test_the_same_joints_in_the_same_order_and_listeners_without_joints_pass(
-        client, listeners, parameters):
+    client, listeners, parameters
+):
     unit = watched(client, [listeners('controller', **parameters)])
     assert unit.refusals(JOINTS) == unit.notes() == []
     assert not unit.is_waiting()
 
 
-def test_other_joints_another_order_and_another_interface_are_refused_in_words(
-        client, listeners):
-    unit = watched(client, [
-        listeners('other_order', joints=['elbow', 'shoulder']),
-        listeners('other_joints', joints=['shoulder']),
-        listeners('position_controller', joints=list(JOINTS), interface_name='position')])
+def test_other_joints_another_order_and_another_interface_are_refused_in_words(client, listeners):
+    unit = watched(
+        client,
+        [
+            listeners('other_order', joints=['elbow', 'shoulder']),
+            listeners('other_joints', joints=['shoulder']),
+            listeners('position_controller', joints=list(JOINTS), interface_name='position'),
+        ],
+    )
     assert sorted(unit.refusals(JOINTS)) == [
         '/other_joints has another number or names of the joints: its parameter joints is '
         '[shoulder], here it is [shoulder, elbow]; make them equal',
         '/other_order has another order of the joints: its parameter joints is [elbow, '
         'shoulder], here it is [shoulder, elbow]; make them equal',
         '/position_controller drives position, expected effort: command_topic must be that of '
-        'an effort controller']
+        'an effort controller',
+    ]
 
 
 def test_a_listener_that_does_not_answer_is_named_and_does_not_hide_the_others(client, listeners):
@@ -94,8 +111,9 @@ def test_a_listener_that_does_not_answer_is_named_and_does_not_hide_the_others(c
     [refusal] = unit.refusals(JOINTS)
     assert refusal.startswith('/z_controller has another order')
     # It is asked on: an answer that comes late counts, too.
-    client.until(lambda: (unit.update(), len(unit.refusals(JOINTS)) == 2)[1],
-                 spinning([deaf, other]))
+    client.until(
+        lambda: (unit.update(), len(unit.refusals(JOINTS)) == 2)[1], spinning([deaf, other])
+    )
 
 
 def test_it_can_be_asked_again(client, listeners):
@@ -115,6 +133,7 @@ def test_a_listener_whose_name_is_not_known_yet_is_waited_for(client, monkeypatc
 
     class Tool:
         node_name, node_namespace, endpoint_gid = '_ros2cli_1234', '/', (2,)
+
     monkeypatch.setattr(client.node, 'get_subscriptions_info_by_topic', lambda topic: [Info, Tool])
     unit = Controllers(client.node, '/efforts')
     unit.update()
@@ -139,30 +158,49 @@ def test_a_controller_that_is_deactivated_is_noticed_by_its_transition_events(cl
         def publish():
             publisher.publish(transition(goal))
             spin()
+
         client.until(lambda: (unit.update(), condition(unit.refusals(JOINTS)))[1], publish)
+
     until(State.PRIMARY_STATE_ACTIVE, lambda refusals: refusals == [])
-    until(State.TRANSITION_STATE_DEACTIVATING, lambda refusals: refusals == [
-        '/controller is being deactivated: the efforts would not reach the arm; activate it '
-        'first, with  ros2 control set_controller_state controller active'])
+    until(
+        State.TRANSITION_STATE_DEACTIVATING,
+        lambda refusals: (
+            refusals
+            == [
+                '/controller is being deactivated: the efforts would not reach the arm; activate '
+                'it first, with  ros2 control set_controller_state controller active'
+            ]
+        ),
+    )
     until(State.PRIMARY_STATE_INACTIVE, lambda refusals: 'is inactive' in ''.join(refusals))
     until(State.PRIMARY_STATE_ACTIVE, lambda refusals: refusals == [])
 
 
 @pytest.mark.parametrize('label, is_refused', [('inactive', True), ('active', False)])
 def test_the_lifecycle_is_asked_for_where_the_listener_tells_it(
-        client, listeners, label, is_refused):
+    client, listeners, label, is_refused
+):
     controller = listeners('controller', joints=list(JOINTS))
 
     def answer(request, response):
         response.current_state.label = label
         return response
+
     controller.node.create_service(GetState, '~/get_state', answer)
     unit = watched(client, [controller])
     spin = spinning([controller])
     unit.ask_again()
     client.until(lambda: (unit.update(), not unit.is_waiting())[1], spin)
-    client.until(lambda: (unit.ask_again(), unit.update(), client.during(0.1, spin), unit.update(),
-                          bool(unit.refusals(JOINTS)) == is_refused)[-1], spin)
+    client.until(
+        lambda: (
+            unit.ask_again(),
+            unit.update(),
+            client.during(0.1, spin),
+            unit.update(),
+            bool(unit.refusals(JOINTS)) == is_refused,
+        )[-1],
+        spin,
+    )
 
 
 def test_a_listener_that_goes_is_forgotten(client, listeners):
@@ -175,7 +213,8 @@ def test_a_listener_that_goes_is_forgotten(client, listeners):
 
 
 def test_a_controller_that_is_started_again_is_noticed_beside_what_is_left_of_it(
-        client, listeners):
+    client, listeners
+):
     controller = listeners('controller', joints=list(JOINTS))
     plot = listeners('plot', start_parameter_services=False)
     unit = watched(client, [controller], [plot])
@@ -187,6 +226,7 @@ def test_a_controller_that_is_started_again_is_noticed_beside_what_is_left_of_it
     def is_renewed():
         unit.update()
         return unit.renewed == ['/controller']
+
     client.until(is_renewed)
     assert not unit.takes_commands()  # the new one has not got the last commands
     assert unit.is_waiting()  # it is asked for its own parameters
@@ -195,19 +235,22 @@ def test_a_controller_that_is_started_again_is_noticed_beside_what_is_left_of_it
         unit.update()
         assert unit.renewed == []
         return unit.listeners['/controller'].has_answered
+
     client.until(has_answered, spinning([controller, again]))
     unit.update()
     assert unit.takes_commands()
     # A node without the parameters of a controller may come and go: the arm must not sink for it.
     plot.node.destroy_subscription(plot.subscription)
     plot.subscription = plot.node.create_subscription(
-        Float64MultiArray, 'efforts', lambda _: None, 1)
+        Float64MultiArray, 'efforts', lambda _: None, 1
+    )
     seen = set(unit.listeners['/plot'].endpoints)
 
     def is_there():
         unit.update()
         assert unit.renewed == []
         return '/plot' in unit.listeners and bool(unit.listeners['/plot'].endpoints - seen)
+
     client.until(is_there)
 
 
@@ -217,8 +260,10 @@ def test_another_controller_of_the_same_name_is_asked_anew(client, listeners):
     controller.node.destroy_subscription(controller.subscription)
     controller.node.set_parameters([Parameter('joints', value=['elbow', 'shoulder'])])
     controller.subscription = controller.node.create_subscription(
-        Float64MultiArray, 'efforts', lambda _: None, 1)
+        Float64MultiArray, 'efforts', lambda _: None, 1
+    )
     gone = []
-    client.until(lambda: (gone.extend(unit.update()), unit.refusals(JOINTS))[1],
-                 spinning([controller]))
+    client.until(
+        lambda: (gone.extend(unit.update()), unit.refusals(JOINTS))[1], spinning([controller])
+    )
     assert gone == ['/controller']

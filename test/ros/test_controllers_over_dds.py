@@ -30,7 +30,8 @@ class Controller:
         self.client = client
         self.is_active, self.hardware = True, [0.0]
         self.subscription = self.node.create_subscription(
-            Float64MultiArray, TOPIC, self._command, 1)
+            Float64MultiArray, TOPIC, self._command, 1
+        )
         client.executor.add_node(self.node)
 
     def _command(self, message):
@@ -73,14 +74,16 @@ def listening(client, controller):
 def enable(client, action):
     """Enable the output and wait for ACTIVE."""
     answers = []
-    client.until(lambda: answers.append(client.enable(True, action)) or answers[-1].success,
-                 action)
+    client.until(
+        lambda: answers.append(client.enable(True, action)) or answers[-1].success, action
+    )
     client.until(client.output_is('ACTIVE'), action)
     return answers[-1].message
 
 
 def test_a_deactivated_controller_ends_the_output_and_the_next_start_begins_there(
-        client, start, controller):
+    client, start, controller
+):
     start(robot_description_file=PENDULUM, state_timeout=1.0)
     client.record_commands()
     client.until_heard(controller.publish)
@@ -110,27 +113,28 @@ def test_a_deactivated_controller_ends_the_output_and_the_next_start_begins_ther
     begin = len(controller.hardware)
     enable(client, controller.publish)
     client.during(0.3, controller.publish)
-    efforts = np.array(controller.hardware[begin - 1:])
+    efforts = np.array(controller.hardware[begin - 1 :])
     assert np.abs(np.diff(efforts)).max() < 0.05 * HOLD
     assert efforts[-1] == pytest.approx(HOLD)
     client.enable(False, controller.publish)
     client.until(client.output_is('READY'), controller.publish)
 
 
-def test_a_controller_that_begins_to_listen_later_gets_the_ramp_or_stops_the_output(
-        client, start):
+def test_a_controller_that_begins_to_listen_later_gets_the_ramp_or_stops_the_output(client, start):
     start(robot_description_file=PENDULUM, state_timeout=1.0)
     outputs = client.outputs
     client.node.create_subscription(OutputState, '/dynamics_node/state', outputs.append, 10)
 
     def publish():
         client.publish(['hinge'], [0.0], [0.0])
+
     client.until_heard(publish)
     assert 'nothing listens there' in enable(client, publish)
     controller = Controller(client)
     try:
-        client.until(lambda: any('has begun to listen' in output.reason for output in outputs),
-                     publish)
+        client.until(
+            lambda: any('has begun to listen' in output.reason for output in outputs), publish
+        )
         client.until(client.output_is('ACTIVE'), publish)
         # The first command may have come before it was found; from then on, the ramp.
         efforts = np.array(controller.hardware)
@@ -151,5 +155,9 @@ def test_an_arm_and_a_gripper_state_publisher_are_named(client, start, controlle
     gripper = client.node.create_publisher(JointState, 'joint_states', 1)
     client.until_heard(controller.publish)
     client.until(gripper.get_subscription_count, controller.publish)
-    client.until(lambda: 'allow_several_state_publishers' in client.enable(
-        True, controller.publish).message, controller.publish)
+    client.until(
+        lambda: (
+            'allow_several_state_publishers' in client.enable(True, controller.publish).message
+        ),
+        controller.publish,
+    )

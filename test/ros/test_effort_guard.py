@@ -48,8 +48,11 @@ class Bench(Client):
         for key, value in parameters.items():
             controller.declare_parameter(key, value)
         controller.create_subscription(
-            Float64MultiArray, topic,
-            lambda message: self.received.append((time.monotonic(), list(message.data))), 1000)
+            Float64MultiArray,
+            topic,
+            lambda message: self.received.append((time.monotonic(), list(message.data))),
+            1000,
+        )
         self.executor.add_node(controller)
         self._controllers.append(controller)
         return controller
@@ -76,6 +79,7 @@ class Bench(Client):
         def send():
             part = min((time.monotonic() - begin) / ramp, 1.0)
             self.send([part * effort for effort in efforts])
+
         self.until(lambda: self.last == list(efforts), send)
 
     def is_in(self, name):
@@ -129,13 +133,15 @@ def assert_ramp(received, start, ramp=RAMP):
 
 # Passing -------------------------------------------------------------------------------------
 
+
 def test_commands_pass_with_their_layout_and_nothing_comes_by_itself(bench, guard):
     controller = bench.add_controller()
     bench.until(bench.is_in('READY'))
     whole = []
     controller.create_subscription(Float64MultiArray, OUTPUT, whole.append, 10)
-    bench.until(lambda: bench.command.get_subscription_count()
-                and controller.count_publishers(OUTPUT))
+    bench.until(
+        lambda: bench.command.get_subscription_count() and controller.count_publishers(OUTPUT)
+    )
     bench.during(0.3)
     assert bench.received == []
     bench.until_connected()
@@ -155,8 +161,9 @@ def test_silence_and_what_is_no_command_end_in_a_fade(active):
     assert 'not finite' in active.reason
     # What goes on with the whole effort does not pass, until it is allowed to.
     active.received.clear()
-    active.until(lambda: 'too far from zero' in active.reason or 'under way' in active.reason,
-                 active.send)
+    active.until(
+        lambda: 'too far from zero' in active.reason or 'under way' in active.reason, active.send
+    )
     assert active.received == []
     answer = active.call(Trigger, '/effort_guard/reset', action=active.send)
     assert answer.success
@@ -179,6 +186,7 @@ def test_a_guard_that_was_stopped_makes_no_step(active, guard):
 
 
 # Its own end ---------------------------------------------------------------------------------
+
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_fades_and_ends_with_0(active, guard, number):
@@ -213,7 +221,6 @@ def test_a_second_signal_is_faster(bench, start):
     assert guard.wait()[0] == 0
 
 
-
 def test_at_rest_it_ends_at_once(bench, guard):
     bench.until(bench.is_in('READY'))
     guard.send(signal.SIGTERM)
@@ -222,21 +229,32 @@ def test_at_rest_it_ends_at_once(bench, guard):
 
 # With the node -------------------------------------------------------------------------------
 
+
 @pytest.fixture
 def floating(guard, start):
     """Return a bench on which the node holds a pendulum through the guard, and the node."""
-    node = start(robot_description_file=PENDULUM, command_topic=INPUT, state_timeout=10.0,
-                 start_ramp=0.2)
+    node = start(
+        robot_description_file=PENDULUM, command_topic=INPUT, state_timeout=10.0, start_ramp=0.2
+    )
     bench = Bench(is_source=False)
     bench.record_commands()
     bench.add_controller(joints=['hinge'], interface_name='effort')
 
     def state():
         bench.publish(['hinge'], [0.5], [0.0])
+
     bench.until_heard(state)
-    bench.until(lambda: bench.call(
-        GetParameters, '/effort_guard/get_parameters', GetParameters.Request(names=['joints']),
-        state).values, state)
+    bench.until(
+        lambda: (
+            bench.call(
+                GetParameters,
+                '/effort_guard/get_parameters',
+                GetParameters.Request(names=['joints']),
+                state,
+            ).values
+        ),
+        state,
+    )
     bench.during(3 * TIMEOUT, state)  # what comes right after the node was found did not begin
     answer = bench.enable(True, state)
     assert answer.success, answer.message
@@ -280,6 +298,7 @@ def test_a_node_that_hangs_ends_in_a_ramp_and_its_return_makes_no_step(floating)
 
     def is_enabled():
         return bench.enable(True, state).success
+
     bench.until(is_enabled, state)
     bench.until(lambda: bench.last == bench.full, state)
     assert bench.is_in('ACTIVE')()
@@ -290,24 +309,33 @@ def test_the_node_is_told_of_the_controller_behind_the_guard(bench, start):
     start(module=MODULE, output_topic='elbow_controller/commands')
     start(robot_description_file=PENDULUM, command_topic=INPUT, state_timeout=10.0)
     bench.node.destroy_publisher(bench.command)  # which the node would refuse
-    bench.add_controller('elbow_controller', '/elbow_controller/commands', joints=['elbow'],
-                         interface_name='position')
+    bench.add_controller(
+        'elbow_controller',
+        '/elbow_controller/commands',
+        joints=['elbow'],
+        interface_name='position',
+    )
 
     def state():
         bench.publish(['hinge'], [0.5], [0.0])
+
     bench.until_heard(state)
 
     def is_refused_for_joints():
         answer = bench.enable(True, state)
         assert not answer.success or bench.enable(False, state).success
         return answer.message if 'parameter joints' in answer.message else ''
+
     message = bench.until(is_refused_for_joints, state)
-    assert ('/effort_guard has another number or names of the joints: its parameter joints is '
-            '[elbow], here it is [hinge]') in message
+    assert (
+        '/effort_guard has another number or names of the joints: its parameter joints is '
+        '[elbow], here it is [hinge]'
+    ) in message
     assert '/effort_guard drives position, expected effort' in message
     # They are the controller's: who sets them here would deceive the node.
-    request = SetParameters.Request(parameters=[
-        Parameter('joints', value=['hinge']).to_parameter_msg()])
+    request = SetParameters.Request(
+        parameters=[Parameter('joints', value=['hinge']).to_parameter_msg()]
+    )
     [result] = bench.call(SetParameters, '/effort_guard/set_parameters', request, state).results
     assert not result.successful and 'those of the controller' in result.reason
 
@@ -315,26 +343,35 @@ def test_the_node_is_told_of_the_controller_behind_the_guard(bench, start):
 def test_controllers_that_contradict_each_other_are_both_named(bench, guard):
     bench.add_controller(joints=['a', 'b'])
     other = bench.add_controller('other_controller', joints=['b', 'a'])
-    bench.until(lambda: joints_of(bench) == ['/forward_effort_controller: a b',
-                                             '/other_controller: b a'])
+    bench.until(
+        lambda: joints_of(bench) == ['/forward_effort_controller: a b', '/other_controller: b a']
+    )
     bench.remove(other)
     bench.until(lambda: joints_of(bench) == ['a', 'b'])
 
 
 def joints_of(bench):
     """Return what the guard says of the controller's joints."""
-    values = bench.call(GetParameters, '/effort_guard/get_parameters',
-                        GetParameters.Request(names=['joints'])).values
+    values = bench.call(
+        GetParameters, '/effort_guard/get_parameters', GetParameters.Request(names=['joints'])
+    ).values
     return list(values[0].string_array_value) if values else []
 
 
 # Others --------------------------------------------------------------------------------------
 
+
 def test_nothing_begins_where_nothing_listens_or_another_source_sends(bench, guard):
     bench.until(lambda: bench.command.get_subscription_count())
     bench.during(3 * TIMEOUT)
-    bench.until(lambda: 'nothing listens on /forward_effort_controller' in bench.reason
-                if bench.guard_states else False, bench.send)
+    bench.until(
+        lambda: (
+            'nothing listens on /forward_effort_controller' in bench.reason
+            if bench.guard_states
+            else False
+        ),
+        bench.send,
+    )
     assert bench.is_in('FAULT')()
     rival = bench.node.create_publisher(Float64MultiArray, OUTPUT, 1)
     bench.add_controller()
@@ -356,19 +393,30 @@ def test_a_second_source_and_slow_commands_are_told_of(active):
     active.node.destroy_publisher(second)
     active.until(lambda: 'commands come too slowly' in active.reason, active.send, period=0.2)
     assert active.is_in('ACTIVE')() or active.is_in('STARTING')()
-    active.until(lambda: any('slow period [s]' in {value.key for value in status.values}
-                             for message in health for status in message.status), active.send,
-                 period=0.2)
+    active.until(
+        lambda: any(
+            'slow period [s]' in {value.key for value in status.values}
+            for message in health
+            for status in message.status
+        ),
+        active.send,
+        period=0.2,
+    )
 
 
 # Parameters, and what it is made of ----------------------------------------------------------
 
-@pytest.mark.parametrize(('given', 'words'), [
-    ({'timeout': 0.0}, 'timeout: expected a number >= 0.01 and <= 1, got 0.0'),
-    ({'stop_ramp': 60.0}, 'stop_ramp: expected a number >= 0.1 and <= 10, got 60.0'),
-    ({'rate_limits': [1.0], 'effort_limits': [1.0, 2.0]}, 'got 1 and 2'),
-    ({'rate_limits': [-1]}, 'rate_limits: expected a finite number > 0'),
-    ({'output_topic': ''}, 'output_topic: expected the name of a topic')])
+
+@pytest.mark.parametrize(
+    ('given', 'words'),
+    [
+        ({'timeout': 0.0}, 'timeout: expected a number >= 0.01 and <= 1, got 0.0'),
+        ({'stop_ramp': 60.0}, 'stop_ramp: expected a number >= 0.1 and <= 10, got 60.0'),
+        ({'rate_limits': [1.0], 'effort_limits': [1.0, 2.0]}, 'got 1 and 2'),
+        ({'rate_limits': [-1]}, 'rate_limits: expected a finite number > 0'),
+        ({'output_topic': ''}, 'output_topic: expected the name of a topic'),
+    ],
+)
 def test_wrong_parameters_are_refused_in_words(given, words):
     with pytest.raises(ParameterError) as error:
         check_all(given)
@@ -381,27 +429,32 @@ def test_a_guard_that_would_hear_itself_does_not_start(start):
 
 
 def test_it_needs_nothing_of_the_library():
-    code = ('import sys\n'
-            f'import {MODULE}, dynamics_node.ros.effort_guard.node\n'
-            'heavy = {"numba", "llvmlite", "scipy", "yourdfpy", "dynamics_node.dynamics"}\n'
-            'print(sorted(heavy & set(sys.modules)))')
+    code = (
+        'import sys\n'
+        f'import {MODULE}, dynamics_node.ros.effort_guard.node\n'
+        'heavy = {"numba", "llvmlite", "scipy", "yourdfpy", "dynamics_node.dynamics"}\n'
+        'print(sorted(heavy & set(sys.modules)))'
+    )
     run = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
     assert run.stdout == '[]\n'
 
 
 def test_a_log_that_is_not_read_does_not_block_it():
-    code = ('import os, sys\n'
-            'from dynamics_node.ros.unblocked_output import UnblockedOutput\n'
-            'output = UnblockedOutput(2)\n'
-            'for i in range(3000):\n'
-            '    try:\n'
-            '        os.write(2, b"x" * 1000)\n'
-            '    except BlockingIOError:\n'
-            '        pass\n'
-            'output.close()\n'
-            'print("done", flush=True)')
-    process = subprocess.Popen([sys.executable, '-c', code], stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE)
+    code = (
+        'import os, sys\n'
+        'from dynamics_node.ros.unblocked_output import UnblockedOutput\n'
+        'output = UnblockedOutput(2)\n'
+        'for i in range(3000):\n'
+        '    try:\n'
+        '        os.write(2, b"x" * 1000)\n'
+        '    except BlockingIOError:\n'
+        '        pass\n'
+        'output.close()\n'
+        'print("done", flush=True)'
+    )
+    process = subprocess.Popen(
+        [sys.executable, '-c', code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
     with process:
         assert process.stdout.readline() == b'done\n'  # while stderr is not read
         said = process.stderr.read()
@@ -410,11 +463,13 @@ def test_a_log_that_is_not_read_does_not_block_it():
 
 
 def test_what_is_logged_arrives():
-    code = ('import os\n'
-            'from dynamics_node.ros.unblocked_output import UnblockedOutput\n'
-            'output = UnblockedOutput(2)\n'
-            'os.write(2, b"first\\n")\n'
-            'output.close()\n'
-            'os.write(2, b"second\\n")')
+    code = (
+        'import os\n'
+        'from dynamics_node.ros.unblocked_output import UnblockedOutput\n'
+        'output = UnblockedOutput(2)\n'
+        'os.write(2, b"first\\n")\n'
+        'output.close()\n'
+        'os.write(2, b"second\\n")'
+    )
     run = subprocess.run([sys.executable, '-c', code], capture_output=True, check=True)
     assert run.stderr == b'first\nsecond\n'

@@ -17,13 +17,17 @@ from reference import graph  # noqa: E402
 
 def found(node):
     """Return what the guard does, as seen from another node: permission → full names."""
-    questions = {'publish': node.get_publisher_names_and_types_by_node,
-                 'subscribe': node.get_subscriber_names_and_types_by_node,
-                 'reply': node.get_service_names_and_types_by_node,
-                 'request': node.get_client_names_and_types_by_node}
+    questions = {
+        'publish': node.get_publisher_names_and_types_by_node,
+        'subscribe': node.get_subscriber_names_and_types_by_node,
+        'reply': node.get_service_names_and_types_by_node,
+        'request': node.get_client_names_and_types_by_node,
+    }
     try:
-        return {permission: {name for name, _ in question('effort_guard', '/')}
-                for permission, question in questions.items()}
+        return {
+            permission: {name for name, _ in question('effort_guard', '/')}
+            for permission, question in questions.items()
+        }
     except NodeNameNonExistentError:
         return None
 
@@ -31,8 +35,9 @@ def found(node):
 def test_the_guard_does_what_it_is_allowed_and_no_more(client, start):
     start(module='dynamics_node.ros.effort_guard.main')
     controller = rclpy.create_node('forward_effort_controller', context=client.context)
-    controller.create_subscription(Float64MultiArray, 'forward_effort_controller/commands',
-                                   lambda message: None, 1)
+    controller.create_subscription(
+        Float64MultiArray, 'forward_effort_controller/commands', lambda message: None, 1
+    )
     client.executor.add_node(controller)
     allowed = read(POLICY.read_text()).allowed
     try:
@@ -42,10 +47,14 @@ def test_the_guard_does_what_it_is_allowed_and_no_more(client, start):
     finally:
         controller.destroy_node()
     named = {full(entry.name) for entry in graph.EFFORT_GUARD}
-    assert named == {name for permission in ('publish', 'subscribe', 'reply')
-                     for name in allowed[permission]
-                     if name not in graph.OF_EVERY_NODE and 'parameter' not in name
-                     and 'type_description' not in name}
+    assert named == {
+        name
+        for permission in ('publish', 'subscribe', 'reply')
+        for name in allowed[permission]
+        if name not in graph.OF_EVERY_NODE
+        and 'parameter' not in name
+        and 'type_description' not in name
+    }
 
 
 def full(name):

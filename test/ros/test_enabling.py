@@ -69,17 +69,28 @@ class Parts(SimpleNamespace):
         self.robot = Robot(model, joints)
         self.output.path.use(self.robot.buffer)
         self.output.path.configure(
-            time.monotonic(), OutputSettings(60.0, 1.0, 1.0, 'ramp_to_zero'),
+            time.monotonic(),
+            OutputSettings(60.0, 1.0, 1.0, 'ramp_to_zero'),
             self.robot.compensation(self.parameters.values),
-            _limiter(self.robot, self.parameters.values), self.robot.motion_limits(()))
+            _limiter(self.robot, self.parameters.values),
+            self.robot.motion_limits(()),
+        )
 
     def set(self, **changes):
-        self.parameters.values = check_all({**self.parameters.values, **{
-            name.replace('__', '.'): value for name, value in changes.items()}})
+        self.parameters.values = check_all(
+            {
+                **self.parameters.values,
+                **{name.replace('__', '.'): value for name, value in changes.items()},
+            }
+        )
 
     def fresh(self, position=HEAVY_AT, **message):
-        self.robot.buffer.update(time.monotonic(), list(self.robot.joint_names),
-                                 [position] * len(self.robot.joint_names), **message)
+        self.robot.buffer.update(
+            time.monotonic(),
+            list(self.robot.joint_names),
+            [position] * len(self.robot.joint_names),
+            **message,
+        )
 
     def begin(self):
         """Ask for the output; return the task that will have the answer."""
@@ -104,13 +115,27 @@ def parts(client):
 
         def __getitem__(self, name):
             return self.values[name]
-    parts = Parts(client=client, output=Output(), controllers=Controllers(), conflicts=[],
-                  descriptions=[], parameters=Parameters())
+
+    parts = Parts(
+        client=client,
+        output=Output(),
+        controllers=Controllers(),
+        conflicts=[],
+        descriptions=[],
+        parameters=Parameters(),
+    )
     parts.use(RobotModel.from_urdf(PENDULUM))
     parts.enabling = Enabling(
-        client.node, parts.parameters, lambda: parts.robot, parts.output, SimpleNamespace(
-            conflicts=lambda: parts.conflicts, description_conflicts=lambda: parts.descriptions),
-        parts.controllers, SimpleNamespace(offer_pending=lambda: None))
+        client.node,
+        parts.parameters,
+        lambda: parts.robot,
+        parts.output,
+        SimpleNamespace(
+            conflicts=lambda: parts.conflicts, description_conflicts=lambda: parts.descriptions
+        ),
+        parts.controllers,
+        SimpleNamespace(offer_pending=lambda: None),
+    )
     parts.fresh(velocities=[0.0])
     return parts
 
@@ -124,8 +149,10 @@ def test_the_output_begins_when_the_controllers_have_nothing_against_it(parts):
     parts.client.until(task.done)
     success, message = task.result()
     assert success, message
-    assert message == ('enabled: full effort in 0.5 s (start_ramp), on /efforts; release brakes '
-                       'when ~/state is ACTIVE, not before')
+    assert message == (
+        'enabled: full effort in 0.5 s (start_ramp), on /efforts; release brakes '
+        'when ~/state is ACTIVE, not before'
+    )
     assert parts.output.path.state.name == 'STARTING'
     assert parts.enable() == (True, 'already enabled: STARTING')
 
@@ -134,19 +161,31 @@ def test_an_arm_that_cannot_hold_itself_here_is_refused_with_joint_torque_and_li
     parts.set(effort_limits=[4.0])
     success, message = parts.enable()
     assert not success
-    assert ('the arm cannot hold itself where it is, gravity torque is above the effort limit: '
-            'hinge: 10.3005, limit 4') in message
+    assert (
+        'the arm cannot hold itself where it is, gravity torque is above the effort limit: '
+        'hinge: 10.3005, limit 4'
+    ) in message
     parts.set(effort_limits=[4.0], compensate__gravity=False)
     assert parts.enable()[0]
 
 
-@pytest.mark.parametrize('plugin, is_refused', [
-    ('ur_robot_driver/URPositionHardwareInterface', True),
-    ('mock_components/GenericSystem', False)])
+@pytest.mark.parametrize(
+    'plugin, is_refused',
+    [
+        ('ur_robot_driver/URPositionHardwareInterface', True),
+        ('mock_components/GenericSystem', False),
+    ],
+)
 def test_an_arm_that_compensates_itself_is_refused(parts, plugin, is_refused):
-    parts.use(RobotModel.from_urdf(PENDULUM.read_text().replace(
-        '</robot>', '<ros2_control name="a" type="system"><hardware><plugin>'
-        f'{plugin}</plugin></hardware></ros2_control></robot>')))
+    parts.use(
+        RobotModel.from_urdf(
+            PENDULUM.read_text().replace(
+                '</robot>',
+                '<ros2_control name="a" type="system"><hardware><plugin>'
+                f'{plugin}</plugin></hardware></ros2_control></robot>',
+            )
+        )
+    )
     parts.fresh()
     success, message = parts.enable()
     assert success != is_refused
@@ -164,9 +203,13 @@ def test_gravity_that_points_up_needs_a_yes(parts):
     assert parts.enable()[0]
 
 
-@pytest.mark.parametrize('changes, what', [
-    ({'effort_limits': [200.0]}, 'effort_limits of hinge: 200, in the URDF 20'),
-    ({'velocity_limits': [30.0]}, 'velocity_limits of hinge: 30, in the URDF 20')])
+@pytest.mark.parametrize(
+    'changes, what',
+    [
+        ({'effort_limits': [200.0]}, 'effort_limits of hinge: 200, in the URDF 20'),
+        ({'velocity_limits': [30.0]}, 'velocity_limits of hinge: 30, in the URDF 20'),
+    ],
+)
 def test_limits_above_those_of_the_urdf_need_a_yes(parts, changes, what):
     parts.set(**changes)
     success, message = parts.enable()
@@ -179,22 +222,29 @@ def test_limits_above_those_of_the_urdf_need_a_yes(parts, changes, what):
 def test_joints_whose_speed_has_no_limit_are_named(parts):
     parts.use(RobotModel.from_urdf(PENDULUM.read_text().replace('velocity="20"', '')))
     parts.fresh(velocities=[0.0])
-    assert ('jumps and runaway are not noticed of hinge: the URDF has no velocity limit there; '
-            'set velocity_limits') in parts.enable()[1]
+    assert (
+        'jumps and runaway are not noticed of hinge: the URDF has no velocity limit there; '
+        'set velocity_limits'
+    ) in parts.enable()[1]
 
 
 def test_missing_velocities_are_named(parts):
     parts.fresh()
-    assert 'joint_states have no velocity of hinge: a runaway is noticed only' in (
-        parts.enable()[1])
+    assert (
+        'joint_states have no velocity of hinge: a runaway is noticed only' in (parts.enable()[1])
+    )
 
 
 def test_joints_that_are_not_chosen_and_were_never_measured_are_named(parts):
-    text = PENDULUM.read_text().replace('</robot>', (
-        '<link name="tool"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" '
-        'iyz="0" izz="1"/></inertial></link><joint name="flap" type="revolute"><parent link='
-        '"rod"/><child link="tool"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="9" '
-        'velocity="9"/></joint></robot>'))
+    text = PENDULUM.read_text().replace(
+        '</robot>',
+        (
+            '<link name="tool"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" '
+            'iyy="1" iyz="0" izz="1"/></inertial></link><joint name="flap" type="revolute">'
+            '<parent link="rod"/><child link="tool"/><axis xyz="1 0 0"/>'
+            '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint></robot>'
+        ),
+    )
     if '"rod"' not in PENDULUM.read_text():
         text = text.replace('"rod"', f'"{RobotModel.from_urdf(PENDULUM).tip_link}"')
     parts.use(RobotModel.from_urdf(text), ['hinge'])
@@ -204,8 +254,10 @@ def test_joints_that_are_not_chosen_and_were_never_measured_are_named(parts):
 
 def test_an_effort_that_another_process_has_left_is_named(parts):
     parts.fresh(velocities=[0.0], efforts=[-9.5])
-    assert ('joint_states report efforts that this node has not sent (hinge: -9.5): if a '
-            'controller still holds them') in parts.enable()[1]
+    assert (
+        'joint_states report efforts that this node has not sent (hinge: -9.5): if a '
+        'controller still holds them'
+    ) in parts.enable()[1]
 
 
 def test_a_newer_description_that_was_refused_is_named(parts):
@@ -218,9 +270,13 @@ def test_every_reason_against_it_is_said_at_once(parts):
     parts.descriptions.append('2 publishers on /robot_description')
     parts.robot.buffer.forget()
     parts.robot.buffer.rejected['stamp'] = 7
-    assert parts.enable() == (False, (
-        'refused: no joint state within 10 s for hinge (dropped so far: 7 for stamp); '
-        '1 other publisher; 2 publishers on /robot_description'))
+    assert parts.enable() == (
+        False,
+        (
+            'refused: no joint state within 10 s for hinge (dropped so far: 7 for stamp); '
+            '1 other publisher; 2 publishers on /robot_description'
+        ),
+    )
     assert parts.controllers.asked == 0
 
 
@@ -241,8 +297,10 @@ def test_a_robot_that_changes_while_they_are_asked_is_refused(parts):
     parts.fresh()
     parts.controllers.waits = False
     parts.client.until(task.done)
-    assert task.result() == (False, (
-        'refused: the robot description has changed while the controllers were asked: ask again'))
+    assert task.result() == (
+        False,
+        ('refused: the robot description has changed while the controllers were asked: ask again'),
+    )
     assert parts.enable()[0]
 
 
@@ -276,9 +334,11 @@ def test_nothing_is_enabled_when_the_process_is_about_to_end(parts):
 def test_a_check_of_the_controllers_that_fails_is_an_answer_and_not_a_start(parts):
     def fail():
         raise RuntimeError('no graph')
+
     parts.controllers.update = fail
     task = parts.client.executor.create_task(
-        parts.enabling._requested, SetBool.Request(data=True), SetBool.Response())
+        parts.enabling._requested, SetBool.Request(data=True), SetBool.Response()
+    )
     parts.client.until(task.done)
     assert not task.result().success
     assert task.result().message == 'internal error: no graph'

@@ -29,10 +29,14 @@ def test_the_events_executor_is_used_where_it_is_sound_and_refused_in_words_else
         assert type(chosen).__name__ == 'EventsExecutor'
 
 
-@pytest.mark.parametrize('broken, problem', [
-    # One that never calls anything, and one that does not wait.
-    (lambda self, timeout_sec=None: None, r'no timer and no message and no late answer'),
-    (lambda self, timeout_sec=None: 1 / 0, 'ZeroDivisionError')])
+@pytest.mark.parametrize(
+    'broken, problem',
+    [
+        # One that never calls anything, and one that does not wait.
+        (lambda self, timeout_sec=None: None, r'no timer and no message and no late answer'),
+        (lambda self, timeout_sec=None: 1 / 0, 'ZeroDivisionError'),
+    ],
+)
 def test_an_executor_that_does_not_work_is_refused(ros, monkeypatch, broken, problem):
     kind = type('EventsExecutor', (SingleThreadedExecutor,), {'spin_once': broken})
     monkeypatch.setattr(rclpy.experimental, 'EventsExecutor', kind, raising=False)
@@ -47,6 +51,7 @@ def test_an_executor_that_computes_while_it_waits_is_refused(ros, monkeypatch):
             for _ in range(20):
                 with contextlib.suppress(Exception):
                     super().spin_once(timeout_sec=0.0)
+
     monkeypatch.setattr(rclpy.experimental, 'EventsExecutor', Busy, raising=False)
     # Beside other tests it gets a part of a core only.
     monkeypatch.setattr(executor, 'BUSY_SHARE', 0.05)

@@ -25,10 +25,12 @@ WEIGHT = 0.5 * 3 * 0.7 * 9.81  # N m, of the pendulum at 0
 @pytest.fixture
 def pendulum(client, start):
     """Return the node with a pendulum, what it publishes and its diagnostics."""
+
     def start_pendulum(**parameters):
         parameters.setdefault('publish_external_torque', 'true')
         process = start(robot_description_file=PENDULUM, state_timeout=1.0, **parameters)
         return process, client.listen(JointState, TOPIC), Health(client)
+
     return start_pendulum
 
 
@@ -47,8 +49,12 @@ class Health:
     @property
     def newest(self):
         """The newest status, or None."""
-        found = [status for message in self._received[-1:] for status in message.status
-                 if status.name == 'dynamics_node: external torque']
+        found = [
+            status
+            for message in self._received[-1:]
+            for status in message.status
+            if status.name == 'dynamics_node: external torque'
+        ]
         return found[0] if found else None
 
     def says(self, text):
@@ -68,15 +74,24 @@ def held(client, effort=WEIGHT, velocity=(0.0,)):
 
 def set_parameter(client, name, action, **value):
     """Set a parameter of the node."""
-    [result] = client.call(SetParameters, '/dynamics_node/set_parameters', SetParameters.Request(
-        parameters=[Parameter(name=name, value=ParameterValue(**value))]), action).results
+    [result] = client.call(
+        SetParameters,
+        '/dynamics_node/set_parameters',
+        SetParameters.Request(parameters=[Parameter(name=name, value=ParameterValue(**value))]),
+        action,
+    ).results
     assert result.successful, result.reason
 
 
 def switch(client, value, action):
     """Switch the topic on or off."""
-    set_parameter(client, 'publish_external_torque', action,
-                  type=ParameterType.PARAMETER_BOOL, bool_value=value)
+    set_parameter(
+        client,
+        'publish_external_torque',
+        action,
+        type=ParameterType.PARAMETER_BOOL,
+        bool_value=value,
+    )
 
 
 def newest(received):
@@ -124,18 +139,28 @@ def test_the_gain_says_how_fast(client, pendulum):
     client.until(lambda: len(received) > 20, action)
     slow = received[-1].effort[0]
     assert 0.0 < slow < 0.5 * WEIGHT
-    set_parameter(client, 'external_torque.gain', action,
-                  type=ParameterType.PARAMETER_DOUBLE, double_value=200.0)
+    set_parameter(
+        client,
+        'external_torque.gain',
+        action,
+        type=ParameterType.PARAMETER_DOUBLE,
+        double_value=200.0,
+    )
     client.until(lambda: newest(received) == pytest.approx(WEIGHT, rel=1e-3), action)
 
 
-@pytest.mark.parametrize('velocity, effort, text, to_do', [
-    ((), WEIGHT, 'no velocity in joint_states of hinge', 'velocity state interface'),
-    ((0.0,), None, 'no effort in joint_states of hinge', 'effort state interface'),
-    ((0.0,), math.nan, 'no effort in joint_states of hinge', 'effort state interface'),
-], ids=['no velocity', 'no effort', 'effort is NaN'])
-def test_what_is_not_known_is_said_and_nothing_is_published(client, pendulum, velocity, effort,
-                                                            text, to_do):
+@pytest.mark.parametrize(
+    'velocity, effort, text, to_do',
+    [
+        ((), WEIGHT, 'no velocity in joint_states of hinge', 'velocity state interface'),
+        ((0.0,), None, 'no effort in joint_states of hinge', 'effort state interface'),
+        ((0.0,), math.nan, 'no effort in joint_states of hinge', 'effort state interface'),
+    ],
+    ids=['no velocity', 'no effort', 'effort is NaN'],
+)
+def test_what_is_not_known_is_said_and_nothing_is_published(
+    client, pendulum, velocity, effort, text, to_do
+):
     process, received, health = pendulum()
     torques = client.listen(JointState, '/dynamics_node/gravity_torque')
     action = partial(held, client, effort, velocity)
@@ -152,11 +177,20 @@ def test_what_is_not_known_is_said_and_nothing_is_published(client, pendulum, ve
     assert text in warnings[0] and to_do in warnings[0]
 
 
-@pytest.mark.parametrize('name, value', [
-    ('gravity', {'type': ParameterType.PARAMETER_DOUBLE_ARRAY,
-                 'double_array_value': [0.0, 0.0, -4.905]}),
-    ('payload.mass', {'type': ParameterType.PARAMETER_DOUBLE, 'double_value': 1.0}),
-], ids=['gravity', 'payload'])
+@pytest.mark.parametrize(
+    'name, value',
+    [
+        (
+            'gravity',
+            {
+                'type': ParameterType.PARAMETER_DOUBLE_ARRAY,
+                'double_array_value': [0.0, 0.0, -4.905],
+            },
+        ),
+        ('payload.mass', {'type': ParameterType.PARAMETER_DOUBLE, 'double_value': 1.0}),
+    ],
+    ids=['gravity', 'payload'],
+)
 def test_another_model_counts(client, pendulum, name, value):
     _, received, health = pendulum(**{'payload.link': 'rod', 'payload.com': '[0.3, 0.0, 0.0]'})
     action = partial(held, client, 0.0)
@@ -175,6 +209,7 @@ def test_states_that_are_too_rare_are_said(client, pendulum):
     def seldom():
         held(client)
         time.sleep(0.15)
+
     client.until(lambda: health.says('joint states come more than 0.1 s apart'), seldom)
     assert health.newest.level == DiagnosticStatus.WARN
     assert received == []
@@ -197,8 +232,12 @@ def test_a_gap_begins_anew(client, pendulum):
 
 def test_parts_of_a_state_are_put_together(client, start):
     # Arm and gripper have a broadcaster each; what is not measured at the same time is no state.
-    start(robot_description_file=ARM7, publish_external_torque='true', state_timeout=1.0,
-          allow_several_state_publishers='true')
+    start(
+        robot_description_file=ARM7,
+        publish_external_torque='true',
+        state_timeout=1.0,
+        allow_several_state_publishers='true',
+    )
     received = client.listen(JointState, TOPIC)
     model = RobotModel.from_urdf(ARM7)
     names, n = list(model.joint_names), len(model.joint_names)
@@ -209,27 +248,39 @@ def test_parts_of_a_state_are_put_together(client, start):
     def halves():
         stamp = client.node.get_clock().now().to_msg()
         for part in (slice(0, 5), slice(5, n)):
-            message = JointState(name=names[part], position=q[part].tolist(),
-                                 velocity=[0.0] * len(names[part]), effort=effort[part].tolist())
+            message = JointState(
+                name=names[part],
+                position=q[part].tolist(),
+                velocity=[0.0] * len(names[part]),
+                effort=effort[part].tolist(),
+            )
             message.header.stamp = stamp
             client.states.publish(message)
+
     client.until(lambda: received and np.allclose(received[-1].effort, outside, atol=1e-3), halves)
-    stamps = [message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
-              for message in received]
+    stamps = [
+        message.header.stamp.sec * 10**9 + message.header.stamp.nanosec for message in received
+    ]
     assert len(set(stamps)) == len(stamps)
 
 
 def test_chosen_joints_come_in_the_chosen_order(client, start):
     model = RobotModel.from_urdf(ARM7)
     chosen = [model.joint_names[i] for i in (3, 1)]
-    start(robot_description_file=ARM7, joints=f'[{", ".join(chosen)}]', state_timeout=1.0,
-          publish_external_torque='true')
+    start(
+        robot_description_file=ARM7,
+        joints=f'[{", ".join(chosen)}]',
+        state_timeout=1.0,
+        publish_external_torque='true',
+    )
     received = client.listen(JointState, TOPIC)
     q = model.neutral_position
     q[[3, 1]] = -0.7, 0.5
     expected = model.gravity_torque(q)[[3, 1]] - [1.0, 2.0]
-    client.until(lambda: received and np.allclose(received[-1].effort, expected, atol=1e-3),
-                 lambda: client.publish(chosen, [-0.7, 0.5], [0.0, 0.0], [1.0, 2.0]))
+    client.until(
+        lambda: received and np.allclose(received[-1].effort, expected, atol=1e-3),
+        lambda: client.publish(chosen, [-0.7, 0.5], [0.0, 0.0], [1.0, 2.0]),
+    )
     assert list(received[-1].name) == chosen
 
 
@@ -237,8 +288,10 @@ def test_without_stamps_the_arrival_counts(client, pendulum):
     _, received, _ = pendulum()
 
     def publish():
-        client.states.publish(JointState(name=['hinge'], position=[0.0], velocity=[0.0],
-                                         effort=[0.0]))
+        client.states.publish(
+            JointState(name=['hinge'], position=[0.0], velocity=[0.0], effort=[0.0])
+        )
+
     client.until(lambda: newest(received) == pytest.approx(WEIGHT, rel=1e-3), publish)
     assert abs(received[-1].header.stamp.sec - time.time()) < 60.0
     assert received[-1].header.stamp != Time()
@@ -261,8 +314,11 @@ def test_efforts_that_can_hardly_be_torques_are_doubted(client, pendulum):
 # What begins anew, in this process -----------------------------------------------------------
 
 SECOND = 1_000_000_000
-NEEDLE = PENDULUM.read_text().replace('type="continuous"', 'type="revolute"').replace(
-    '<limit ', '<limit lower="-9" upper="9" ')
+NEEDLE = (
+    PENDULUM.read_text()
+    .replace('type="continuous"', 'type="revolute"')
+    .replace('<limit ', '<limit lower="-9" upper="9" ')
+)
 
 
 class Direct:
@@ -273,9 +329,12 @@ class Direct:
         self.parameters = {'publish_external_torque': True, 'external_torque.gain': 100.0}
         self.messages = []
         publisher = types.SimpleNamespace(publish=self.messages.append)
-        self.unit = ExternalTorque(types.SimpleNamespace(
-            get_logger=client.node.get_logger, create_publisher=lambda *_, **__: publisher),
-            self.parameters)
+        self.unit = ExternalTorque(
+            types.SimpleNamespace(
+                get_logger=client.node.get_logger, create_publisher=lambda *_, **__: publisher
+            ),
+            self.parameters,
+        )
         assert self.unit.configure()
 
     def state(self, time, position=0.0, effort=0.0):
@@ -338,12 +397,19 @@ def unknown_effort(direct):
     assert direct.state(0.05, effort=math.nan) == 0
 
 
-@pytest.mark.parametrize('event, time, position', [
-    (jump, 0.06, 8.0), (other_robot, 0.06, 0.0), (other_gain, 0.06, 0.0),
-    (off_and_on, 0.06, 0.0), (unknown_effort, 0.06, 0.0),
-    (lambda direct: None, 0.5, 0.0), (lambda direct: None, -9.0, 0.0),
-], ids=['jump', 'description', 'gain', 'off and on', 'unknown effort', 'gap',
-        'clock back'])
+@pytest.mark.parametrize(
+    'event, time, position',
+    [
+        (jump, 0.06, 8.0),
+        (other_robot, 0.06, 0.0),
+        (other_gain, 0.06, 0.0),
+        (off_and_on, 0.06, 0.0),
+        (unknown_effort, 0.06, 0.0),
+        (lambda direct: None, 0.5, 0.0),
+        (lambda direct: None, -9.0, 0.0),
+    ],
+    ids=['jump', 'description', 'gain', 'off and on', 'unknown effort', 'gap', 'clock back'],
+)
 def test_what_breaks_the_observation_begins_it_anew(direct, event, time, position):
     event(direct)
     assert direct.state(time, position) == 0
@@ -390,8 +456,11 @@ def swing(time, model):
     """Return position, velocity and acceleration of a slow swing within the limits."""
     size = np.minimum(0.3, 0.2 * np.ptp(model.position_limits, axis=1))
     phase = np.pi * time + np.arange(len(size))
-    return (model.position_limits.mean(axis=1) + size * np.sin(phase),
-            np.pi * size * np.cos(phase), -np.pi**2 * size * np.sin(phase))
+    return (
+        model.position_limits.mean(axis=1) + size * np.sin(phase),
+        np.pi * size * np.cos(phase),
+        -(np.pi**2) * size * np.sin(phase),
+    )
 
 
 def test_a_doubt_outlives_the_observer_that_began_before_it(direct):

@@ -49,17 +49,24 @@ class PushedRig(Rig):
         if add_missing_damping(self.judge):
             by_name = dict(zip(self.judge.names, self.judge.damping().tolist(), strict=True))
             parameters['friction.viscous'] = [by_name[name] for name in self.judge.driven_names]
-        super().__init__(urdf=urdf, state_timeout=0.5, stop_ramp=0.2,
-                         publish_external_torque='true', **parameters)
+        super().__init__(
+            urdf=urdf,
+            state_timeout=0.5,
+            stop_ramp=0.2,
+            publish_external_torque='true',
+            **parameters,
+        )
         self.estimates = []
         self.client.node.create_subscription(
-            JointState, 'dynamics_node/external_torque', self._heard, QoSProfile(depth=1000))
+            JointState, 'dynamics_node/external_torque', self._heard, QoSProfile(depth=1000)
+        )
         self._set('push_duration', type=ParameterType.PARAMETER_DOUBLE, double_value=PUSH)
 
     def push(self, force):
         """Push the last link, wait until that is over, and return from when to when, s."""
-        self._set('push_force', type=ParameterType.PARAMETER_DOUBLE_ARRAY,
-                  double_array_value=list(force))
+        self._set(
+            'push_force', type=ParameterType.PARAMETER_DOUBLE_ARRAY, double_array_value=list(force)
+        )
         self.until(lambda: self.client.speed < 1e-4)
         self.during(0.3)  # the brakes may have held it until now: that is a push, too
         asked = self.client.now
@@ -91,7 +98,7 @@ class PushedRig(Rig):
         """Return stamps (k,) and estimates (k, n) within a time, s."""
         self.until(lambda: self.estimates and self.estimates[-1][0] > end)
         times = [time for time, _ in self.estimates]
-        chosen = self.estimates[bisect.bisect(times, begin):bisect.bisect_left(times, end)]
+        chosen = self.estimates[bisect.bisect(times, begin) : bisect.bisect_left(times, end)]
         assert chosen, f'no estimate between {begin} and {end} s, the last ones: {times[-5:]}'
         return tuple(np.array(column) for column in zip(*chosen, strict=True))
 
@@ -120,12 +127,16 @@ class PushedRig(Rig):
     def _heard(self, message):
         assert list(message.name) == self.arm.driven_names
         stamp = message.header.stamp
-        self.estimates.append((self.client.time_of(stamp.sec * 10**9 + stamp.nanosec),
-                               np.array(message.effort)))
+        self.estimates.append(
+            (self.client.time_of(stamp.sec * 10**9 + stamp.nanosec), np.array(message.effort))
+        )
 
 
-@pytest.fixture(scope='module', params=[ARM7, public_robot('ur_description/urdf/ur5_robot.urdf')],
-                ids=lambda path: path.stem)
+@pytest.fixture(
+    scope='module',
+    params=[ARM7, public_robot('ur_description/urdf/ur5_robot.urdf')],
+    ids=lambda path: path.stem,
+)
 def shared(request):
     """Return the rig of all tests with a robot."""
     rig = PushedRig(request.param)
@@ -164,8 +175,11 @@ def in_one_go(rig, action, before_another=lambda rig: None):
     pytest.skip('robot or node were silent for too long in every attempt: the machine is too busy')
 
 
-@pytest.mark.parametrize('force', [(0.0, 10.0, 0.0), (10.0, 0.0, 0.0), (0.0, 6.0, -8.0)],
-                         ids=['sideways', 'forwards', 'down'])
+@pytest.mark.parametrize(
+    'force',
+    [(0.0, 10.0, 0.0), (10.0, 0.0, 0.0), (0.0, 6.0, -8.0)],
+    ids=['sideways', 'forwards', 'down'],
+)
 def test_a_push_appears_with_its_joint_torques(rig, force):
     # From where one push has left it, the next would be another one.
     begin, end = in_one_go(rig, lambda: rig.push(force), float_at_start)
@@ -203,6 +217,7 @@ def test_nothing_appears_while_the_arm_falls(rig):
         rig.until(lambda: rig.client.truth[-1][0] > begin + 0.2 and rig.client.speed > 2.0)
         time, _, velocity, _ = rig.client.truth_between(begin, rig.client.now)
         return begin + 0.1, time[np.argmax(np.abs(velocity).max(axis=1) > 2.0)]
+
     rig.client.set_brakes(True)
     assert rig.client.enable(False).success
     rig.until(lambda: rig.client.output == 'READY')

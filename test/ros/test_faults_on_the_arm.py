@@ -72,8 +72,9 @@ def assert_it_sank_by_the_ramp(rig):
     check_fading(rig, begin)
     time, position, velocity, effort = rig.client.truth_between(begin, end)
     # Never faster; a simulation that lags, and a command that comes late, make it slower.
-    expected_time, _, expected = sink(rig.urdf_text, position[0], effort[0], STOP_RAMP,
-                                      end - begin + CATCHES_UP)
+    expected_time, _, expected = sink(
+        rig.urdf_text, position[0], effort[0], STOP_RAMP, end - begin + CATCHES_UP
+    )
     speed = np.abs(velocity).max(axis=1)
     allowed = 1.1 * np.interp(time - begin + CATCHES_UP, expected_time, expected) + 0.02
     assert speed.tolist() == np.minimum(speed, allowed).tolist()
@@ -92,7 +93,7 @@ def check_fading(rig, begin):
     # A command was computed after the one before it had been written. Of a pause of the process
     # the ramp counts a tenth of a second; less is asked for here, because a writing time says
     # only about when a command was computed.
-    written = np.maximum(np.array(times[first - 1:-1]) - begin, 0.0)
+    written = np.maximum(np.array(times[first - 1 : -1]) - begin, 0.0)
     passed = np.cumsum(np.minimum(np.diff(written, prepend=0.0), 0.8 * MAX_RAMP_STEP))
     left = np.clip(1.0 - passed / STOP_RAMP, 0.0, 1.0)
     faded = np.array(commands[first:])
@@ -110,10 +111,21 @@ def assert_it_is_still_held(rig, since, fault=''):
 # What does not stop it -----------------------------------------------------------------------
 
 HARMLESS = {
-    'permuted': None, 'parts': None, 'no_stamp': None, 'unknown_names/7': None, 'flood': None,
-    'duplicated': None, 'frozen/7': 'old stamp', 'nan/7': 'not finite', 'length/7': 'length',
-    'name_twice/7': 'name twice', 'jump/20': 'jump', 'old_stamp/7': 'stamp',
-    'future_stamp/7': 'stamp', 'many_names/20': 'too many names', 'garbage/7': 'unreadable',
+    'permuted': None,
+    'parts': None,
+    'no_stamp': None,
+    'unknown_names/7': None,
+    'flood': None,
+    'duplicated': None,
+    'frozen/7': 'old stamp',
+    'nan/7': 'not finite',
+    'length/7': 'length',
+    'name_twice/7': 'name twice',
+    'jump/20': 'jump',
+    'old_stamp/7': 'stamp',
+    'future_stamp/7': 'stamp',
+    'many_names/20': 'too many names',
+    'garbage/7': 'unreadable',
 }
 
 
@@ -160,6 +172,7 @@ def test_a_short_freeze_of_the_line_is_bridged(unhurried):
 
 # What stops it -------------------------------------------------------------------------------
 
+
 def test_silence_stops_it_by_the_ramp(rig):
     rig.client.set_fault('silent')
     assert 'joint_states stale: last ' in rig.until_fault()
@@ -168,8 +181,16 @@ def test_silence_stops_it_by_the_ramp(rig):
 
 def test_nothing_that_is_not_a_fresh_state_keeps_it_alive(rig):
     client = rig.client
-    faults = ('frozen', 'bag_loop', 'half', 'all_nan', 'old_stamp', 'future_stamp', 'name_twice',
-              'unknown_names')
+    faults = (
+        'frozen',
+        'bag_loop',
+        'half',
+        'all_nan',
+        'old_stamp',
+        'future_stamp',
+        'name_twice',
+        'unknown_names',
+    )
     # Together longer than the timeout, each shorter.
     for fault in faults:
         client.set_fault(fault)
@@ -206,8 +227,12 @@ def test_a_forgotten_publisher_of_zeros_stops_it(rig):
     node, names = rig.client.node, rig.arm.names
     # As joint_state_publisher does it; the arm stands far from zero.
     rival = node.create_publisher(JointState, 'joint_states', 1)
-    timer = node.create_timer(0.1, lambda: rival.publish(JointState(
-        header=JointState().header, name=names, position=[0.0] * len(names))))
+    timer = node.create_timer(
+        0.1,
+        lambda: rival.publish(
+            JointState(header=JointState().header, name=names, position=[0.0] * len(names))
+        ),
+    )
     try:
         reason = rig.until_fault()
     finally:
@@ -238,12 +263,14 @@ def test_a_controller_with_another_order_of_joints_is_not_driven(rig):
     other.create_subscription(Float64MultiArray, COMMAND_TOPIC, lambda message: None, 1)
     client.executor.add_node(other)
     try:
+
         def is_refused():
             answer = client.enable(True)
             if answer.success:  # it has not been found yet
                 client.enable(False)
                 rig.until(lambda: client.output == 'READY')
             return answer.message if not answer.success else ''
+
         message = rig.until(is_refused)
     finally:
         client.executor.remove_node(other)
@@ -253,6 +280,7 @@ def test_a_controller_with_another_order_of_joints_is_not_driven(rig):
 
 
 # Processes that end --------------------------------------------------------------------------
+
 
 def assert_a_signal_lets_the_arm_sink(rig, number):
     """It ends in order, and the arm sinks by the ramp."""
@@ -304,12 +332,18 @@ def test_sigint_to_the_node_lets_the_arm_sink_by_the_ramp(patient):
 
 # Simulated time ------------------------------------------------------------------------------
 
+
 @pytest.fixture
 def simulated(shared):
     """Return the rig with a node on simulated time, hearing reliably and patient."""
-    shared.use_node(**{
-        'use_sim_time': 'true', 'state_timeout': 10.0, 'allow_several_state_publishers': 'true',
-        'qos_overrides./joint_states.subscription.reliability': 'reliable'})
+    shared.use_node(
+        **{
+            'use_sim_time': 'true',
+            'state_timeout': 10.0,
+            'allow_several_state_publishers': 'true',
+            'qos_overrides./joint_states.subscription.reliability': 'reliable',
+        }
+    )
     yield shared
     shared.client.set_clock_offset(math.nan)
     check_commands(shared)

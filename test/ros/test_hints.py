@@ -40,8 +40,9 @@ class Waiting:
         self.robot, self.time = None, 0.0
         source = DescriptionSource(node, NO_DESCRIPTION, lambda *_: True)
         source.begin()
-        subscription = node.create_subscription(JointState, 'joint_states', lambda _: None,
-                                                qos_profile_sensor_data)
+        subscription = node.create_subscription(
+            JointState, 'joint_states', lambda _: None, qos_profile_sensor_data
+        )
         states = SimpleNamespace(subscription=subscription, topic=subscription.topic_name)
         self.hints = Hints(node, lambda: self.robot, source, states, lambda: self.time)
 
@@ -51,8 +52,9 @@ class Waiting:
 
     def feed(self, names, position=None):
         """Take a joint state."""
-        self.robot.buffer.update(self.time, list(names),
-                                 [0.1] * len(names) if position is None else position)
+        self.robot.buffer.update(
+            self.time, list(names), [0.1] * len(names) if position is None else position
+        )
 
     def after(self, seconds, capfd):
         """Return what the log says in the hint that is given some seconds later."""
@@ -106,10 +108,14 @@ def test_a_description_in_another_namespace_is_found(waiting, other, capfd):
     other.node.create_publisher(JointState, '/up/robot_description', LATCHED)
     other.node.destroy_publisher(other.description)
     graph = waiting.client.node
-    waiting.client.until(lambda: graph.count_publishers('/left/robot_description')
-                         and graph.count_publishers('/up/robot_description')
-                         and graph.count_publishers('/robot_description_semantic')
-                         and not graph.count_publishers('/robot_description'))
+    waiting.client.until(
+        lambda: (
+            graph.count_publishers('/left/robot_description')
+            and graph.count_publishers('/up/robot_description')
+            and graph.count_publishers('/robot_description_semantic')
+            and not graph.count_publishers('/robot_description')
+        )
+    )
     text = waiting.after(PATIENCE, capfd)
     assert 'But /left/robot_description has it' in text
     assert '--ros-args -r __ns:=/left' in text
@@ -121,8 +127,12 @@ def test_a_namespace_is_taken_over_only_where_the_description_is_too(waiting, ot
     other.node.create_publisher(JointState, '/local_jsb/joint_states', qos_profile_sensor_data)
     other.node.destroy_publisher(other.states)
     graph = waiting.client.node
-    waiting.client.until(lambda: graph.count_publishers('/local_jsb/joint_states')
-                         and not graph.count_publishers('/joint_states'))
+    waiting.client.until(
+        lambda: (
+            graph.count_publishers('/local_jsb/joint_states')
+            and not graph.count_publishers('/joint_states')
+        )
+    )
     waiting.describe()
     text = waiting.after(PATIENCE, capfd)
     assert '--ros-args -r joint_states:=/local_jsb/joint_states' in text and '__ns' not in text
@@ -137,8 +147,11 @@ def test_in_a_namespace_of_its_own_only_the_topic_is_remapped(other, capfd):
         other.node.destroy_publisher(other.description)
         other.node.create_publisher(String, '/left/robot_description', LATCHED)
         waiting.client.until(
-            lambda: waiting.client.node.count_publishers('/left/robot_description')
-            and not waiting.client.node.count_publishers('/robot_description'))
+            lambda: (
+                waiting.client.node.count_publishers('/left/robot_description')
+                and not waiting.client.node.count_publishers('/robot_description')
+            )
+        )
         text = waiting.after(PATIENCE, capfd)
     finally:
         waiting.client.close()
@@ -186,8 +199,10 @@ def test_in_a_namespace_the_broadcaster_has_another_controller_manager(other, ca
         text = waiting.after(PATIENCE, capfd)
     finally:
         waiting.client.close()
-    assert ('ros2 control load_controller --controller-manager /left/controller_manager '
-            '--set-state active joint_state_broadcaster') in text
+    assert (
+        'ros2 control load_controller --controller-manager /left/controller_manager '
+        '--set-state active joint_state_broadcaster'
+    ) in text
 
 
 def test_a_publisher_that_says_nothing_is_looked_at(waiting, published, capfd):
@@ -199,8 +214,11 @@ def test_joint_states_under_another_name_are_found(waiting, other, capfd):
     other.node.destroy_publisher(other.states)
     other.node.create_publisher(JointState, '/arm/joint_states_raw', qos_profile_sensor_data)
     waiting.client.until(
-        lambda: waiting.client.node.count_publishers('/arm/joint_states_raw')
-        and not waiting.client.node.count_publishers('/joint_states'))
+        lambda: (
+            waiting.client.node.count_publishers('/arm/joint_states_raw')
+            and not waiting.client.node.count_publishers('/joint_states')
+        )
+    )
     waiting.describe()
     text = waiting.after(PATIENCE, capfd)
     assert '--ros-args -r joint_states:=/arm/joint_states_raw' in text
@@ -250,18 +268,21 @@ def test_nobody_listens_to_the_commands(waiting, other):
     assert 'ros2 control list_controllers' in text
     assert 'ros2 control load_controller --set-state active forward_effort_controller' in text
     in_namespace = node.create_publisher(Float64MultiArray, '/left/effort/commands', 1)
-    assert ('load_controller --controller-manager /left/controller_manager --set-state active '
-            'effort') in unheard(node, in_namespace)
+    assert (
+        'load_controller --controller-manager /left/controller_manager --set-state active effort'
+    ) in unheard(node, in_namespace)
     assert 'active forward_effort_controller' in unheard(
-        node, node.create_publisher(Float64MultiArray, '/efforts', 1))
+        node, node.create_publisher(Float64MultiArray, '/efforts', 1)
+    )
     # Takes radians.
-    other.node.create_subscription(Float64MultiArray, '/forward_position_controller/commands',
-                                   lambda _: None, 1)
-    waiting.client.until(
-        lambda: node.count_subscribers('/forward_position_controller/commands'))
+    other.node.create_subscription(
+        Float64MultiArray, '/forward_position_controller/commands', lambda _: None, 1
+    )
+    waiting.client.until(lambda: node.count_subscribers('/forward_position_controller/commands'))
     assert 'forward_position_controller' not in unheard(node, publisher)
-    other.node.create_subscription(Float64MultiArray, '/arm_controller/commands',
-                                   lambda _: None, 1)
+    other.node.create_subscription(
+        Float64MultiArray, '/arm_controller/commands', lambda _: None, 1
+    )
     waiting.client.until(lambda: node.count_subscribers('/arm_controller/commands'))
     assert '-p command_topic:=/arm_controller/commands' in unheard(node, publisher)
 
@@ -271,10 +292,14 @@ def test_the_node_says_it_by_itself(client, start):
 
     def heard(text):
         return [message for message in said if text in message.msg]
+
     start('__node:=without_description')
     client.until(lambda: heard('no robot description on /robot_description for 5 s'))
     start('__node:=with_other_names', robot_description_file=PENDULUM)
-    client.until(lambda: heard("named with 'left_' before"),
-                 lambda: client.publish(['left_hinge'], [0.0]))
+    client.until(
+        lambda: heard("named with 'left_' before"), lambda: client.publish(['left_hinge'], [0.0])
+    )
     assert {message.name for message in heard(' for 5 s')} == {
-        'without_description', 'with_other_names'}
+        'without_description',
+        'with_other_names',
+    }

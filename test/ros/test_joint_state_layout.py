@@ -27,15 +27,19 @@ AT_POSITIONS = AT_NAMES + 4 + 8 + 12
 
 def with_count(at, count, data=FULL):
     """Return a message in which one count says something else."""
-    return data[:at] + struct.pack('<I', count) + data[at + 4:]
+    return data[:at] + struct.pack('<I', count) + data[at + 4 :]
 
 
 def test_the_positions_begin_behind_the_names():
     assert end_of_names(FULL) == AT_POSITIONS
     assert end_of_names(state(frame='')) == AT_NAMES - 4 + 4
     # The same in the other order of bytes.
-    swapped = b'\x00\x00\x00\x00' + bytes(8) + struct.pack('>I4sII2s2sII', 4, b'abc', 1, 2, b'a',
-                                                           b'', 0, 0) + bytes(4)
+    swapped = (
+        b'\x00\x00\x00\x00'
+        + bytes(8)
+        + struct.pack('>I4sII2s2sII', 4, b'abc', 1, 2, b'a', b'', 0, 0)
+        + bytes(4)
+    )
     assert end_of_names(swapped) == len(swapped) - 12
 
 
@@ -47,10 +51,16 @@ def test_whatever_ends_too_early_is_refused(length):
     assert caught.value.kind == 'unreadable'
 
 
-@pytest.mark.parametrize('at, kind', [
-    (12, 'unreadable'), (AT_NAMES, 'too many names'), (AT_NAMES + 4, 'unreadable'),
-    (AT_POSITIONS, 'length'),
-], ids=['frame', 'names', 'name', 'positions'])
+@pytest.mark.parametrize(
+    'at, kind',
+    [
+        (12, 'unreadable'),
+        (AT_NAMES, 'too many names'),
+        (AT_NAMES + 4, 'unreadable'),
+        (AT_POSITIONS, 'length'),
+    ],
+    ids=['frame', 'names', 'name', 'positions'],
+)
 @pytest.mark.parametrize('count', [2**32 - 1, 2**31, 2**28, MAX_NAMES + 1])
 def test_a_count_is_not_believed(at, kind, count, capfd):
     reader = JointStateReader()

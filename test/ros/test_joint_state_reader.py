@@ -11,16 +11,18 @@ from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
 
 numbers = st.lists(st.floats(width=64), max_size=5)
-names = st.lists(st.text(st.characters(codec='utf-8', exclude_characters='\x00'), max_size=9),
-                 max_size=5)
+names = st.lists(
+    st.text(st.characters(codec='utf-8', exclude_characters='\x00'), max_size=9), max_size=5
+)
 
 
 @st.composite
 def states(draw, name=names):
-    message = JointState(name=draw(name), position=draw(numbers), velocity=draw(numbers),
-                         effort=draw(numbers))
+    message = JointState(
+        name=draw(name), position=draw(numbers), velocity=draw(numbers), effort=draw(numbers)
+    )
     message.header.frame_id = draw(st.sampled_from(['', 'base', 'world']))
-    message.header.stamp.sec = draw(st.integers(-2**31, 2**31 - 1))
+    message.header.stamp.sec = draw(st.integers(-(2**31), 2**31 - 1))
     message.header.stamp.nanosec = draw(st.integers(0, 2**32 - 1))
     return message
 
@@ -77,11 +79,13 @@ def test_the_names_are_read_once(monkeypatch):
 
 @pytest.mark.parametrize('frame', ['', 'base_link'])
 def test_more_names_than_any_robot_has_are_refused_before_anything_is_made_of_them(
-        monkeypatch, frame):
+    monkeypatch, frame
+):
     def message(count):
         state = JointState(name=['a'] * count)
         state.header.frame_id = frame
         return serialize_message(state)
+
     reader = JointStateReader()
     assert len(reader.read(message(MAX_NAMES)).name) == MAX_NAMES
     monkeypatch.setattr(joint_state_reader, 'deserialize_message', None)

@@ -27,6 +27,7 @@ def test_the_middleware_is_not_asked_for_every_message():
         def get_subscription_count(self):
             self.asked += 1
             return 1
+
     publisher = Publisher()
     listened = Listened(publisher, period=3600.0)
     assert all(bool(listened) for _ in range(100))

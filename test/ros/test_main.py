@@ -25,8 +25,13 @@ class Output:
         self.path = TorquePath(settings)
         self.path.use(JointStateBuffer(('a',), ('a',), np.zeros(1)))
         model = SimpleNamespace(torques=lambda q, qd: (EFFORT, EFFORT), needs_velocity=False)
-        self.path.configure(time.monotonic(), settings, model, EffortLimiter(
-            np.array([10.0]), np.array([1e6]), np.ones(1), ('a',)), MotionLimits.none(('a',)))
+        self.path.configure(
+            time.monotonic(),
+            settings,
+            model,
+            EffortLimiter(np.array([10.0]), np.array([1e6]), np.ones(1), ('a',)),
+            MotionLimits.none(('a',)),
+        )
         self.sent = []
         self.is_broken = False
 
@@ -73,9 +78,12 @@ def loop(fails, signals=None, **options):
     output, log = Output(**options), []
     output.drive()
     node = SimpleNamespace(
-        output=output, path=output.path, logger=SimpleNamespace(
-            error=log.append, fatal=log.append, warning=log.append),
-        create_guard_condition=lambda _: SimpleNamespace(trigger=None), destroy_node=lambda: None)
+        output=output,
+        path=output.path,
+        logger=SimpleNamespace(error=log.append, fatal=log.append, warning=log.append),
+        create_guard_condition=lambda _: SimpleNamespace(trigger=None),
+        destroy_node=lambda: None,
+    )
     signals = signals or SimpleNamespace(name='', count=0, call=lambda wake: None)
     return main._Loop(node, Executor(fails), signals), output, log
 
@@ -106,6 +114,7 @@ def test_an_error_now_and_then_does_not_end_it():
         if spun > 800:
             signals.name, signals.count = 'SIGTERM', 1
         return spun % 2
+
     unit._executor.fails = fails
     assert unit.run() == 0
     assert output.sent[-1] == 0.0
@@ -137,6 +146,7 @@ def test_a_second_signal_hastens_the_stop():
         if spun == 300:
             signals.count = 2
         return False
+
     unit._executor.fails = second
     begin = time.monotonic()
     assert unit.run() == 0

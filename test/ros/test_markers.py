@@ -68,23 +68,33 @@ def axes_of(model, q):
     """Return the axes of the revolute joints in the base frame, from the Jacobians."""
     links = {frame.body: link for link, frame in model.tree.links.items()}
     bodies = {name: k for k, name in enumerate(model.tree.body_names)}
-    return {name: model.jacobian(q, links[bodies[name]])[3:, i]
-            for i, name in enumerate(model.joint_names)}
+    return {
+        name: model.jacobian(q, links[bodies[name]])[3:, i]
+        for i, name in enumerate(model.joint_names)
+    }
 
 
 def log_lines(client):
     """Return a list that grows by every line that a node logs."""
     lines = []
     client.node.create_subscription(
-        Log, '/rosout', lambda message: lines.append(message.msg),
-        QoSProfile(depth=100, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL))
+        Log,
+        '/rosout',
+        lambda message: lines.append(message.msg),
+        QoSProfile(depth=100, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL),
+    )
     return lines
 
 
 def until_complete(client, received, state):
     """Wait until torques and efforts are shown, both of the same state."""
-    client.until(lambda: groups(received) >= {'centre_of_mass', 'gravity', 'gravity_torque',
-                                              'effort', 'torque_text'}, state)
+    client.until(
+        lambda: (
+            groups(received)
+            >= {'centre_of_mass', 'gravity', 'gravity_torque', 'effort', 'torque_text'}
+        ),
+        state,
+    )
     received.clear()
     client.until(lambda: len(received) >= 2, state)
 
@@ -101,6 +111,7 @@ def test_the_picture_is_that_of_the_services(client, start, start_markers, name)
 
     def state():
         client.publish(reversed(model.joint_names), q[::-1], (), effort[::-1])
+
     until_complete(client, received, state)
     answer = client.call(GetGravityTorque, '/dynamics_node/get_gravity_torque', action=state)
     assert answer.success
@@ -144,6 +155,7 @@ def test_without_a_subscriber_it_does_not_even_listen(client, start_markers):
         except NodeNameNonExistentError:
             return None
         return {'/joint_states', '/dynamics_node/gravity_torque'} & {name for name, _ in found}
+
     client.until(lambda: client.node.count_publishers(TOPIC) and listens() == set(), state)
     received = []
     eye = client.node.create_subscription(MarkerArray, TOPIC, received.append, 10)
@@ -165,11 +177,13 @@ def test_it_comes_at_a_rate_for_people_however_fast_the_states(client, start_mar
     start_markers()
     client.description.publish(String(data=PENDULUM.read_text()))
     times = []
-    client.node.create_subscription(MarkerArray, TOPIC, lambda _: times.append(time.monotonic()),
-                                    10)
+    client.node.create_subscription(
+        MarkerArray, TOPIC, lambda _: times.append(time.monotonic()), 10
+    )
 
     def state():
         client.publish(['hinge'], [0.3])
+
     client.until(lambda: times, state, period=0.003)
     times.clear()
     begun = time.monotonic()
@@ -182,12 +196,17 @@ def test_without_the_dynamics_node_masses_are_drawn(client, start, start_markers
     start_markers()
     received, lines = client.listen(MarkerArray, TOPIC), log_lines(client)
     node_is_missing = 'the dynamics node /dynamics_node, without which only masses are drawn'
-    client.until(lambda: f'waiting for a robot description on /robot_description; '
-                 f'{node_is_missing}; joint states on /joint_states' in lines)
+    client.until(
+        lambda: (
+            f'waiting for a robot description on /robot_description; '
+            f'{node_is_missing}; joint states on /joint_states' in lines
+        )
+    )
     client.description.publish(String(data=PENDULUM.read_text()))
 
     def hinge():
         client.publish(['hinge'], [0.3], (), [4.0])
+
     client.until(lambda: f'waiting for {node_is_missing}' in lines, hinge)
     client.until(lambda: received, hinge)
     assert groups(received) == {'centre_of_mass', 'inertia'}
@@ -203,18 +222,25 @@ def test_without_the_dynamics_node_masses_are_drawn(client, start, start_markers
     arm = RobotModel.from_urdf(ARM7)
     received.clear()
     client.description.publish(String(data=ARM7.read_text()))
-    client.until(lambda: len(received) > 1 and len(by_name(received[-1])) > 40,
-                 lambda: client.publish(arm.joint_names, arm.neutral_position))
+    client.until(
+        lambda: len(received) > 1 and len(by_name(received[-1])) > 40,
+        lambda: client.publish(arm.joint_names, arm.neutral_position),
+    )
     first = next(message for message in received if ('centre_of_mass', 5) in by_name(message))
     assert first.markers[0].action == Marker.DELETEALL
-    names = {marker.text.partition(':')[0] for marker in received[-1].markers
-             if marker.ns == 'torque_text'}
+    names = {
+        marker.text.partition(':')[0]
+        for marker in received[-1].markers
+        if marker.ns == 'torque_text'
+    }
     assert names == set(arm.joint_names)
     # Without the node there are masses again, and no torque that is out of date.
     node.send(signal.SIGINT)
     node.wait(PATIENCE)
-    client.until(lambda: groups(received) == {'centre_of_mass', 'inertia'},
-                 lambda: client.publish(arm.joint_names, arm.neutral_position))
+    client.until(
+        lambda: groups(received) == {'centre_of_mass', 'inertia'},
+        lambda: client.publish(arm.joint_names, arm.neutral_position),
+    )
 
 
 def test_a_description_that_is_refused_is_told_and_waited_on(client, start_markers):
@@ -240,11 +266,16 @@ def test_a_payload_comes_and_goes(client, start, start_markers):
 
     def state():
         client.publish(arm.joint_names, arm.neutral_position)
+
     client.until(lambda: 'torque_text' in groups(received), state)
     assert 'payload' not in groups(received)
     for mass in (2.0, 0.0):
-        assert client.call(SetPayload, '/dynamics_node/set_payload', SetPayload.Request(
-            link='hand', inertia=Inertia(m=mass, com=Vector3(z=0.1))), state).success
+        assert client.call(
+            SetPayload,
+            '/dynamics_node/set_payload',
+            SetPayload.Request(link='hand', inertia=Inertia(m=mass, com=Vector3(z=0.1))),
+            state,
+        ).success
         client.until(lambda mass=mass: bool(mass) == ('payload' in groups(received)), state)
         assert_fit_to_be_shown(received[-1])
     loaded = [message for message in received if ('payload', 0) in by_name(message)]
@@ -260,13 +291,28 @@ def test_parameters_are_read_anew_from_a_node_that_is_started_again(client, star
 
     def state():
         client.publish(arm.joint_names, arm.neutral_position)
+
     client.until(lambda: 'torque_text' in groups(received), state)
     first.send(signal.SIGKILL)  # for some time, the graph still contains it
     first.wait(PATIENCE)
-    start(**{'robot_description_file': ARM7, 'state_timeout': 1.0, 'payload.link': 'hand',
-             'payload.mass': 2.0, 'joints': '[wrist_roll]', 'effort_limits': '[50.0]'})
-    client.until(lambda: 'payload' in groups(received) and ('torque_text', 0) in
-                 by_name(received[-1]) and ('torque_text', 1) not in by_name(received[-1]), state)
+    start(
+        **{
+            'robot_description_file': ARM7,
+            'state_timeout': 1.0,
+            'payload.link': 'hand',
+            'payload.mass': 2.0,
+            'joints': '[wrist_roll]',
+            'effort_limits': '[50.0]',
+        }
+    )
+    client.until(
+        lambda: (
+            'payload' in groups(received)
+            and ('torque_text', 0) in by_name(received[-1])
+            and ('torque_text', 1) not in by_name(received[-1])
+        ),
+        state,
+    )
     assert by_name(received[-1])['torque_text', 0].text.startswith('wrist_roll: ')
 
 

@@ -16,13 +16,22 @@ from visualization_msgs.msg import Marker
 STAMP = Time(sec=1_700_000_000, nanosec=999_999_999)
 ARM = RobotModel.from_urdf(ARM7)
 MASSES = {'centre_of_mass', 'inertia'}
-SETTINGS = {'joints': [], 'gravity': [0.0, 0.0, -9.81], 'effort_limits': [], 'payload.link': '',
-            'payload.mass': 0.0, 'payload.com': [0.0] * 3, 'payload.inertia': [0.0] * 6}
+SETTINGS = {
+    'joints': [],
+    'gravity': [0.0, 0.0, -9.81],
+    'effort_limits': [],
+    'payload.link': '',
+    'payload.mass': 0.0,
+    'payload.com': [0.0] * 3,
+    'payload.inertia': [0.0] * 6,
+}
 
 
 def settings(**changes):
-    return SETTINGS | {name.replace('_', '.', 1) if name.startswith('payload') else name: value
-                       for name, value in changes.items()}
+    return SETTINGS | {
+        name.replace('_', '.', 1) if name.startswith('payload') else name: value
+        for name, value in changes.items()
+    }
 
 
 def view(source=ARM7, **changes):
@@ -55,13 +64,21 @@ def test_torques_are_taken_by_name_and_go_when_they_are_old():
     shown = view(joints=['elbow_pitch', 'wrist_roll'])
     shown.take_torque(['wrist_roll', 'shoulder_yaw', 'elbow_pitch'], [3.0, 1.0, 2.0], 10.0)
     assert [text.split(' (')[0] for text in texts(shown.shapes(10.0 + TORQUE_TIMEOUT))] == [
-        'elbow_pitch: 2 N m', 'wrist_roll: 3 N m']
+        'elbow_pitch: 2 N m',
+        'wrist_roll: 3 N m',
+    ]
     assert groups(shown.shapes(10.1 + TORQUE_TIMEOUT)) == MASSES | {'gravity'}
 
 
-@pytest.mark.parametrize(('names', 'torque'), [
-    (ARM.joint_names[1:], [1.0] * 7), (ARM.joint_names, [1.0] * 7),
-    (ARM.joint_names, [np.nan] + [1.0] * 7)], ids=['joint', 'length', 'nan'])
+@pytest.mark.parametrize(
+    ('names', 'torque'),
+    [
+        (ARM.joint_names[1:], [1.0] * 7),
+        (ARM.joint_names, [1.0] * 7),
+        (ARM.joint_names, [np.nan] + [1.0] * 7),
+    ],
+    ids=['joint', 'length', 'nan'],
+)
 def test_a_torque_that_lacks_a_joint_is_not_shown(names, torque):
     shown = view()
     shown.take_torque(names, torque, 0.0)
@@ -89,15 +106,23 @@ def test_states_are_merged_by_name():
     [sphere] = [shape for shape in shapes if (shape.group, shape.number) == ('centre_of_mass', 6)]
     inertia = ARM.tree.inertia[6]
     assert sphere.position == pytest.approx(
-        (ARM.body_poses(q)[6] @ inertia[:, 3] / inertia[3, 3])[:3])
+        (ARM.body_poses(q)[6] @ inertia[:, 3] / inertia[3, 3])[:3]
+    )
     assert [shape.number for shape in shapes if shape.group == 'effort'] == [
-        ARM.joint_names.index('wrist_roll')]
+        ARM.joint_names.index('wrist_roll')
+    ]
 
 
 def test_an_effort_that_stops_coming_goes():
     shown = view()
-    for effort, count in (([2.0], 1), ([np.inf], 0), ([2.0], 1), ([2.0, 3.0], 0), ([2.0], 1),
-                          ([], 0)):
+    for effort, count in (
+        ([2.0], 1),
+        ([np.inf], 0),
+        ([2.0], 1),
+        ([2.0, 3.0], 0),
+        ([2.0], 1),
+        ([], 0),
+    ):
         shown.take_state(['wrist_roll'], [0.1], effort)
         assert sum(shape.group == 'effort' for shape in shown.shapes(0.0)) == count
 
@@ -112,15 +137,21 @@ def test_a_position_that_cannot_be_is_passed_over(position):
 
 
 def test_the_limits_are_those_in_force():
-    share = {limits: texts(view(PENDULUM, effort_limits=list(limits)).shapes(0.0))
-             for limits in ((), (4.0,))}
+    share = {
+        limits: texts(view(PENDULUM, effort_limits=list(limits)).shapes(0.0))
+        for limits in ((), (4.0,))
+    }
     assert share == {(): ['hinge: 1 N m (5 %)'], (4.0,): ['hinge: 1 N m (25 %)']}
 
 
-@pytest.mark.parametrize(('change', 'words'), [
-    ({'joints': ['hinge', 'elbow']}, 'elbow'),
-    ({'effort_limits': [1.0, 2.0]}, 'effort_limits: expected 1 numbers for hinge, got 2'),
-    ({'payload_link': 'hand', 'payload_mass': 1.0}, 'hand')])
+@pytest.mark.parametrize(
+    ('change', 'words'),
+    [
+        ({'joints': ['hinge', 'elbow']}, 'elbow'),
+        ({'effort_limits': [1.0, 2.0]}, 'effort_limits: expected 1 numbers for hinge, got 2'),
+        ({'payload_link': 'hand', 'payload_mass': 1.0}, 'hand'),
+    ],
+)
 def test_settings_of_another_robot_leave_the_masses(change, words):
     shown = view(PENDULUM)
     with pytest.raises(DynamicsError, match=words):
@@ -129,8 +160,12 @@ def test_settings_of_another_robot_leave_the_masses(change, words):
 
 
 def test_a_payload_is_that_of_the_parameters():
-    shown = view(payload_link='hand', payload_mass=2.0, payload_com=[0.0, 0.0, 0.1],
-                 payload_inertia=[0.1, 0.0, 0.0, 0.1, 0.0, 0.1])
+    shown = view(
+        payload_link='hand',
+        payload_mass=2.0,
+        payload_com=[0.0, 0.0, 0.1],
+        payload_inertia=[0.1, 0.0, 0.0, 0.1, 0.0, 0.1],
+    )
     expected = ARM.with_payload('hand', 2.0, (0.0, 0.0, 0.1), 0.1 * np.eye(3))
     assert shown.model.payload.pseudo_inertia == pytest.approx(expected.payload.pseudo_inertia)
     assert 'payload' in groups(shown.shapes(0.0))
@@ -148,6 +183,7 @@ def test_a_robot_that_does_not_move_is_refused():
 
 
 # Messages -------------------------------------------------------------------------------------
+
 
 def made(messages, shapes):
     return messages.make(shapes, STAMP, 'base').markers
@@ -167,10 +203,18 @@ def test_every_marker_can_be_replaced_and_vanishes_in_time():
 
 def test_markers_go_when_the_set_of_shapes_changes():
     messages, shapes = MarkerMessages(), view().shapes(0.0)
-    actions = [[marker.action for marker in made(messages, few)][:1]
-               for few in (shapes, shapes, shapes[1:], shapes[1:], [], [])]
-    assert actions == [[Marker.DELETEALL], [Marker.ADD], [Marker.DELETEALL], [Marker.ADD],
-                       [Marker.DELETEALL], []]
+    actions = [
+        [marker.action for marker in made(messages, few)][:1]
+        for few in (shapes, shapes, shapes[1:], shapes[1:], [], [])
+    ]
+    assert actions == [
+        [Marker.DELETEALL],
+        [Marker.ADD],
+        [Marker.DELETEALL],
+        [Marker.ADD],
+        [Marker.DELETEALL],
+        [],
+    ]
 
 
 def test_a_marker_that_is_filled_anew_is_that_of_its_shape():
@@ -184,18 +228,32 @@ def test_a_marker_that_is_filled_anew_is_that_of_its_shape():
 
 
 def test_a_shape_is_translated_completely():
-    shape = Shape('group', 3, LINE, (0.1, 0.2, 0.3), (0.5, 0.25, 0.75, 1.0), (1.0, 2.0, 3.0),
-                  (0.0, 0.6, 0.0, 0.8), ((4.0, 5.0, 6.0), (7.0, 8.0, 9.0)), 'words')
+    shape = Shape(
+        'group',
+        3,
+        LINE,
+        (0.1, 0.2, 0.3),
+        (0.5, 0.25, 0.75, 1.0),
+        (1.0, 2.0, 3.0),
+        (0.0, 0.6, 0.0, 0.8),
+        ((4.0, 5.0, 6.0), (7.0, 8.0, 9.0)),
+        'words',
+    )
     [_, marker] = made(MarkerMessages(), [shape])
     p, o, s, c = marker.pose.position, marker.pose.orientation, marker.scale, marker.color
     assert (marker.ns, marker.id, marker.type, marker.text) == (
-        'group', 3, Marker.LINE_STRIP, 'words')
+        'group',
+        3,
+        Marker.LINE_STRIP,
+        'words',
+    )
     assert (s.x, s.y, s.z) == shape.size and (c.r, c.g, c.b, c.a) == shape.colour
     assert (p.x, p.y, p.z) == shape.position and (o.x, o.y, o.z, o.w) == shape.orientation
     assert tuple((point.x, point.y, point.z) for point in marker.points) == shape.points
 
 
 # Callbacks ------------------------------------------------------------------------------------
+
 
 def test_a_limited_group_takes_the_newest_messages_and_no_more(client):
     group, received = LimitedGroup(), []
@@ -209,6 +267,7 @@ def test_a_limited_group_takes_the_newest_messages_and_no_more(client):
         for word in words:
             publisher.publish(String(data=word))
         client.until(lambda: len(other) == len(words))
+
     publish('a', 'b', 'c')
     assert received == []
     group.allow(3)

@@ -24,8 +24,13 @@ def found(client, other, kind, qos):
     subscription = client.node.create_subscription(JointState, 'states', lambda _: None, RELIABLE)
     other.node.create_publisher(kind, 'states', qos)
     # The name of a publisher's node comes some time after the publisher.
-    client.until(lambda: [info for info in client.node.get_publishers_info_by_topic('/states')
-                          if info.node_name == 'test_client'])
+    client.until(
+        lambda: [
+            info
+            for info in client.node.get_publishers_info_by_topic('/states')
+            if info.node_name == 'test_client'
+        ]
+    )
     return mismatches(client.node, subscription)
 
 
@@ -41,5 +46,6 @@ def test_another_quality_of_service_is_named_with_the_publisher(client, other):
 
 def test_another_type_is_named_with_what_was_expected(client, other):
     [text] = found(client, other, String, RELIABLE)
-    assert text == ('/test_client publishes std_msgs/msg/String there, expected '
-                    'sensor_msgs/msg/JointState')
+    assert text == (
+        '/test_client publishes std_msgs/msg/String there, expected sensor_msgs/msg/JointState'
+    )

@@ -16,8 +16,10 @@ PAYLOAD = {'payload.link': 'hand', 'payload.mass': 2.0}
 
 def made(**values):
     """Return the model of an arm with some parameters, dots written as double underscores."""
-    return configured(Robot(ARM, CHOSEN), check_all(
-        {name.replace('__', '.'): value for name, value in values.items()}))
+    return configured(
+        Robot(ARM, CHOSEN),
+        check_all({name.replace('__', '.'): value for name, value in values.items()}),
+    )
 
 
 def test_the_defaults_are_the_robot_of_the_urdf():
@@ -27,17 +29,33 @@ def test_the_defaults_are_the_robot_of_the_urdf():
     assert model.payload is None
 
 
-@pytest.mark.parametrize(('values', 'expected'), [
-    ({'gravity': [0.0, 9.81, 0.0]}, lambda: ARM.with_gravity([0.0, 9.81, 0.0])),
-    ({'rotor_inertia': [0.3, 0.1]},
-     lambda: ARM.with_rotor_inertia([0.0, 0.1, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0])),
-    ({'payload__link': 'hand', 'payload__mass': 2.0}, lambda: ARM.with_payload('hand', 2.0)),
-    ({'payload__link': 'hand', 'payload__mass': 2.0, 'payload__com': [0.1, 0.2, 0.3]},
-     lambda: ARM.with_payload('hand', 2.0, (0.1, 0.2, 0.3))),
-    ({'payload__link': 'hand', 'payload__mass': 2.0,
-      'payload__inertia': [0.02, 0.001, -0.002, 0.03, 0.003, 0.025]},
-     lambda: ARM.with_payload('hand', 2.0, inertia=[
-         [0.02, 0.001, -0.002], [0.001, 0.03, 0.003], [-0.002, 0.003, 0.025]]))])
+@pytest.mark.parametrize(
+    ('values', 'expected'),
+    [
+        ({'gravity': [0.0, 9.81, 0.0]}, lambda: ARM.with_gravity([0.0, 9.81, 0.0])),
+        (
+            {'rotor_inertia': [0.3, 0.1]},
+            lambda: ARM.with_rotor_inertia([0.0, 0.1, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0]),
+        ),
+        ({'payload__link': 'hand', 'payload__mass': 2.0}, lambda: ARM.with_payload('hand', 2.0)),
+        (
+            {'payload__link': 'hand', 'payload__mass': 2.0, 'payload__com': [0.1, 0.2, 0.3]},
+            lambda: ARM.with_payload('hand', 2.0, (0.1, 0.2, 0.3)),
+        ),
+        (
+            {
+                'payload__link': 'hand',
+                'payload__mass': 2.0,
+                'payload__inertia': [0.02, 0.001, -0.002, 0.03, 0.003, 0.025],
+            },
+            lambda: ARM.with_payload(
+                'hand',
+                2.0,
+                inertia=[[0.02, 0.001, -0.002], [0.001, 0.03, 0.003], [-0.002, 0.003, 0.025]],
+            ),
+        ),
+    ],
+)
 def test_each_of_them_changes_the_efforts_of_a_motion(values, expected):
     motion = Q, QD, 3.0 * Q
     effort = made(**values).inverse_dynamics(*motion)
@@ -45,10 +63,14 @@ def test_each_of_them_changes_the_efforts_of_a_motion(values, expected):
     assert effort != pytest.approx(ARM.inverse_dynamics(*motion), abs=1e-3)
 
 
-@pytest.mark.parametrize(('values', 'expected'), [
-    ({'friction__viscous': [0.7, 0.2]}, lambda f: f.viscous),
-    ({'friction__coulomb': [0.7, 0.2]}, lambda f: f.coulomb),
-    ({'friction__smoothing_velocity': [0.7, 0.2]}, lambda f: f.smoothing_velocity)])
+@pytest.mark.parametrize(
+    ('values', 'expected'),
+    [
+        ({'friction__viscous': [0.7, 0.2]}, lambda f: f.viscous),
+        ({'friction__coulomb': [0.7, 0.2]}, lambda f: f.coulomb),
+        ({'friction__smoothing_velocity': [0.7, 0.2]}, lambda f: f.smoothing_velocity),
+    ],
+)
 def test_friction_of_the_chosen_joints_the_urdf_for_the_others(values, expected):
     numbers, before = expected(made(**values).friction), expected(ARM.friction)
     assert numbers[[3, 1]].tolist() == [0.7, 0.2]
@@ -77,8 +99,10 @@ def test_what_the_robot_cannot_be_is_refused():
     with pytest.raises(ArgumentError, match=r"^payload.link: 'nose' is not a link of"):
         made(payload__link='nose')
     with pytest.raises(InertiaError, match='triangle'):
-        made(**{name.replace('.', '__'): value for name, value in PAYLOAD.items()},
-             payload__inertia=[1.0, 0, 0, 0, 0, 0])
+        made(
+            **{name.replace('.', '__'): value for name, value in PAYLOAD.items()},
+            payload__inertia=[1.0, 0, 0, 0, 0, 0],
+        )
 
 
 def test_the_tensor_of_six_numbers():

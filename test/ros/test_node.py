@@ -53,13 +53,15 @@ def test_gravity_torque_is_by_name_whatever_the_order(client, start, arm):
 
     def forward():
         client.publish(arm.joint_names, q)
+
     torques.clear()
     client.until(lambda: len(torques) > 2, forward)
     assert_same(torques[-1].effort, arm.gravity_torque(q))
 
 
 def test_partial_messages_are_merged_and_nothing_is_computed_before_all_joints_came(
-        client, start, arm):
+    client, start, arm
+):
     start(robot_description_file=ARM7)
     torques = client.listen(JointState, '/dynamics_node/gravity_torque')
     q = np.clip(np.full(8, 0.2), *arm.position_limits.T)
@@ -71,6 +73,7 @@ def test_partial_messages_are_merged_and_nothing_is_computed_before_all_joints_c
     def halves():
         client.publish(arm.joint_names[:5], q[:5])
         client.publish(arm.joint_names[5:], q[5:])
+
     client.until(lambda: torques, halves)
     assert_same(torques[-1].effort, arm.gravity_torque(q))
 
@@ -103,8 +106,10 @@ def test_dynamics_are_published_and_coriolis_is_left_out_without_velocity(client
 
     for velocity in ((), [*qd[:7], np.nan]):
         received.clear()
-        client.until(lambda: received and not len(received[-1].velocity),
-                     lambda velocity=velocity: client.publish(arm.joint_names, q, velocity))
+        client.until(
+            lambda: received and not len(received[-1].velocity),
+            lambda velocity=velocity: client.publish(arm.joint_names, q, velocity),
+        )
         message = received[-1]
         assert len(message.coriolis_matrix) == len(message.coriolis_torque) == 0
         assert_same(message.gravity_torque, G)
@@ -125,6 +130,7 @@ def test_bad_joint_states_are_dropped_and_the_node_goes_on(client, start):
         client.publish(['hinge'], [np.inf])
         client.publish(['hinge'], [0.5], [1.0, 2.0])
         client.publish([], [])
+
     client.during(0.5, garbage)
     assert torques == []
     client.until(lambda: torques, lambda: client.publish(['hinge'], [0.0]))
@@ -132,8 +138,10 @@ def test_bad_joint_states_are_dropped_and_the_node_goes_on(client, start):
 
 
 def test_the_log_says_which_publisher_of_joint_states_cannot_be_heard(client, start):
-    process = start(robot_description_file=PENDULUM, **{
-        'qos_overrides./joint_states.subscription.reliability': 'reliable'})
+    process = start(
+        robot_description_file=PENDULUM,
+        **{'qos_overrides./joint_states.subscription.reliability': 'reliable'},
+    )
     client.node.create_publisher(JointState, 'joint_states', qos_profile_sensor_data)
     client.until(lambda: client.node.count_subscribers('/joint_states'))
     client.during(7.5)
@@ -147,13 +155,20 @@ def test_the_log_says_which_publisher_of_joint_states_cannot_be_heard(client, st
 def test_a_latched_joint_state_is_heard_where_the_parameters_ask_for_it(client, start):
     latched = client.node.create_publisher(JointState, 'joint_states', LATCHED)
     latched.publish(JointState(name=['hinge'], position=[0.5]))
-    start(robot_description_file=PENDULUM, state_timeout=10.0, **{
-        'qos_overrides./joint_states.subscription.durability': 'transient_local',
-        # Without it DDS sends nothing that was published before.
-        'qos_overrides./joint_states.subscription.reliability': 'reliable'})
+    start(
+        robot_description_file=PENDULUM,
+        state_timeout=10.0,
+        **{
+            'qos_overrides./joint_states.subscription.durability': 'transient_local',
+            # Without it DDS sends nothing that was published before.
+            'qos_overrides./joint_states.subscription.reliability': 'reliable',
+        },
+    )
     answers: list = []
-    client.until(lambda: answers and answers[-1].success, lambda: answers.append(client.call(
-        GetGravityTorque, '/dynamics_node/get_gravity_torque')))
+    client.until(
+        lambda: answers and answers[-1].success,
+        lambda: answers.append(client.call(GetGravityTorque, '/dynamics_node/get_gravity_torque')),
+    )
     assert answers[-1].position[0] == 0.5
 
 
@@ -182,16 +197,33 @@ def test_a_description_refused_for_a_parameter_is_taken_when_the_parameter_is_ri
     client.during(1.0)
 
     def put(link):
-        [result] = client.call(SetParameters, '/dynamics_node/set_parameters',
-                               SetParameters.Request(parameters=[Parameter(
-                                   name='payload.link', value=ParameterValue(
-                                       type=ParameterType.PARAMETER_STRING,
-                                       string_value=link))])).results
+        [result] = client.call(
+            SetParameters,
+            '/dynamics_node/set_parameters',
+            SetParameters.Request(
+                parameters=[
+                    Parameter(
+                        name='payload.link',
+                        value=ParameterValue(
+                            type=ParameterType.PARAMETER_STRING, string_value=link
+                        ),
+                    )
+                ]
+            ),
+        ).results
         assert result.successful, result.reason
 
     def model():
-        return next(iter(status.message for message in statuses[-1:] for status in message.status
-                         if status.name == 'dynamics_node: model'), '')
+        return next(
+            iter(
+                status.message
+                for message in statuses[-1:]
+                for status in message.status
+                if status.name == 'dynamics_node: model'
+            ),
+            '',
+        )
+
     put('chin')
     statuses.clear()
     client.until(lambda: 'no robot description' in model())
@@ -201,8 +233,9 @@ def test_a_description_refused_for_a_parameter_is_taken_when_the_parameter_is_ri
 
 def test_the_description_may_be_a_parameter_of_a_file(client, start, tmp_path):
     path = tmp_path / 'parameters.yaml'
-    path.write_text(yaml.safe_dump(
-        {'/**': {'ros__parameters': {'robot_description': PENDULUM.read_text()}}}))
+    path.write_text(
+        yaml.safe_dump({'/**': {'ros__parameters': {'robot_description': PENDULUM.read_text()}}})
+    )
     start(parameters_file=path)
     torques = client.listen(JointState, '/dynamics_node/gravity_torque')
     client.until(lambda: torques, lambda: client.publish(['hinge'], [0.0]))
@@ -210,13 +243,19 @@ def test_the_description_may_be_a_parameter_of_a_file(client, start, tmp_path):
 
 
 def test_an_impossible_start_is_one_clear_line_and_exit_code_1(start):
-    cases = [({'robot_description_file': 'no_such.urdf'}, "cannot read 'no_such.urdf'"),
-             ({'gravity': '[0.0, 0.0]'}, 'gravity: expected 3 numbers, got [0.0, 0.0]'),
-             ({'robot_description_file': PENDULUM, 'joints': '[elbow]'},
-              "joints: 'elbow' is not a joint that can be moved; available: hinge"),
-             ({'robot_description_file': PENDULUM, 'effort_limits': '[1.0, 2.0]'},
-              'effort_limits: expected 1 numbers for hinge, or none; got 2'),
-             ({'gravity': '[0.0, '}, "Couldn't parse parameter override rule")]
+    cases = [
+        ({'robot_description_file': 'no_such.urdf'}, "cannot read 'no_such.urdf'"),
+        ({'gravity': '[0.0, 0.0]'}, 'gravity: expected 3 numbers, got [0.0, 0.0]'),
+        (
+            {'robot_description_file': PENDULUM, 'joints': '[elbow]'},
+            "joints: 'elbow' is not a joint that can be moved; available: hinge",
+        ),
+        (
+            {'robot_description_file': PENDULUM, 'effort_limits': '[1.0, 2.0]'},
+            'effort_limits: expected 1 numbers for hinge, or none; got 2',
+        ),
+        ({'gravity': '[0.0, '}, "Couldn't parse parameter override rule"),
+    ]
     processes = [(start(**parameters), text) for parameters, text in cases]
     for process, text in processes:
         code, output = process.wait(PATIENCE_TO_START)
@@ -234,8 +273,9 @@ def parameters_request(**values):
         kind = ParameterType.PARAMETER_DOUBLE
         wrapped = ParameterValue(type=kind, double_value=0.0)
         if isinstance(value, list):
-            wrapped = ParameterValue(type=ParameterType.PARAMETER_DOUBLE_ARRAY,
-                                     double_array_value=value)
+            wrapped = ParameterValue(
+                type=ParameterType.PARAMETER_DOUBLE_ARRAY, double_array_value=value
+            )
         elif isinstance(value, str):
             wrapped = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=value)
         else:
@@ -252,17 +292,22 @@ def test_parameters_change_at_run_time_and_wrong_ones_change_nothing(client, sta
         client.publish(['hinge'], [0.0])
 
     def set_parameters(**values):
-        return client.call(SetParametersAtomically, '/dynamics_node/set_parameters_atomically',
-                           parameters_request(**values), publish).result
+        return client.call(
+            SetParametersAtomically,
+            '/dynamics_node/set_parameters_atomically',
+            parameters_request(**values),
+            publish,
+        ).result
 
     for values, reason in (
-            ({'gravity': [0.0, 0.0, float('nan')]}, 'gravity: expected a number >= -20'),
-            ({'gravity': [0.0, 19.0, 19.0]}, 'gravity: expected at most 20 m/s^2, got 26.87'),
-            ({'gravity': 'down'}, 'gravity: expected a list of numbers'),
-            ({'gravity': [0.0, 0.0, -1.62], 'state_timeout': 0.0}, 'state_timeout: expected'),
-            ({'stop_behavior': 'faint'}, 'one of ramp_to_zero, hold, zero'),
-            ({'effort_limits': [1.0, 2.0]}, 'expected 1 numbers for hinge'),
-            ({'command_topic': 'other'}, 'read-only')):
+        ({'gravity': [0.0, 0.0, float('nan')]}, 'gravity: expected a number >= -20'),
+        ({'gravity': [0.0, 19.0, 19.0]}, 'gravity: expected at most 20 m/s^2, got 26.87'),
+        ({'gravity': 'down'}, 'gravity: expected a list of numbers'),
+        ({'gravity': [0.0, 0.0, -1.62], 'state_timeout': 0.0}, 'state_timeout: expected'),
+        ({'stop_behavior': 'faint'}, 'one of ramp_to_zero, hold, zero'),
+        ({'effort_limits': [1.0, 2.0]}, 'expected 1 numbers for hinge'),
+        ({'command_topic': 'other'}, 'read-only'),
+    ):
         answer = set_parameters(**values)
         assert not answer.successful
         assert reason in answer.reason
@@ -278,11 +323,16 @@ def statuses(received):
     """Return the values of the newest diagnostics by status, and the messages."""
     if not received:
         return {}, {}
-    newest = {status.name.removeprefix('dynamics_node: '): status
-              for status in received[-1].status}
-    return ({name: {value.key: value.value for value in status.values}
-             for name, status in newest.items()},
-            {name: status.message for name, status in newest.items()})
+    newest = {
+        status.name.removeprefix('dynamics_node: '): status for status in received[-1].status
+    }
+    return (
+        {
+            name: {value.key: value.value for value in status.values}
+            for name, status in newest.items()
+        },
+        {name: status.message for name, status in newest.items()},
+    )
 
 
 def test_diagnostics_tell_about_model_states_output_and_state_machine(client, start):
@@ -301,7 +351,10 @@ def test_diagnostics_tell_about_model_states_output_and_state_machine(client, st
     assert values('joint states')['publishers'] == '1'
     assert float(values('joint states')['age [s]']) < 1.0
     assert values('state machine') == {
-        'state': 'READY', 'reason': 'output is off until it is enabled', 'latched fault': ''}
+        'state': 'READY',
+        'reason': 'output is off until it is enabled',
+        'latched fault': '',
+    }
     assert values('output')['topic'] == '/forward_effort_controller/commands'
     assert values('output')['commands'] == '0'
 
@@ -310,8 +363,12 @@ def test_diagnostics_tell_about_model_states_output_and_state_machine(client, st
         client.publish(['hinge'], [np.nan])
         client.during(0.01)
         client.publish(['hinge'], [])
-    client.until(lambda: {'rejected: not finite', 'rejected: length'} <= set(
-        values('joint states')), bad, period=0.05)
+
+    client.until(
+        lambda: {'rejected: not finite', 'rejected: length'} <= set(values('joint states')),
+        bad,
+        period=0.05,
+    )
     assert int(values('joint states')['rejected']) >= 2
     client.until(lambda: statuses(received)[1]['joint states'] == 'stale: hinge')
 
@@ -334,7 +391,9 @@ def test_stamps_that_cannot_be_true_make_no_torque_and_the_refusal_says_so(clien
             stamp = now + round(offset * 1e9)
             message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 1_000_000_000)
             client.states.publish(message)
+
         return publish
+
     # In time, and without a stamp: arrival counts.
     for good in (stamped(-0.02), stamped(0, moves=False)):
         torques.clear()
@@ -356,25 +415,39 @@ def test_stamps_that_cannot_be_true_make_no_torque_and_the_refusal_says_so(clien
 def test_every_service_but_enable_waits_for_the_torque(client):
     node = DynamicsNode(context=client.context)
     try:
-        waiting = {service.srv_name.rpartition('/')[2] for service in node.services
-                   if service.callback_group is node.service_group}
-        others = {service.srv_name for service in node.services
-                  if service.callback_group is not node.service_group}
+        waiting = {
+            service.srv_name.rpartition('/')[2]
+            for service in node.services
+            if service.callback_group is node.service_group
+        }
+        others = {
+            service.srv_name
+            for service in node.services
+            if service.callback_group is not node.service_group
+        }
         assert {'get_mass_matrix', 'set_payload', 'set_parameters', 'get_parameters'} <= waiting
         # rclpy's own get_type_description is made without `create_service`.
         assert {name.rpartition('/')[2] for name in others} - {'get_type_description'} == {
-            'enable'}
+            'enable'
+        }
     finally:
         node.destroy_node()
 
 
-def test_an_exception_on_the_way_of_the_torque_stops_the_output_and_the_node_lives(
-        client, capfd):
+def test_an_exception_on_the_way_of_the_torque_stops_the_output_and_the_node_lives(client, capfd):
     # In this process, where the model can be broken.
-    node = DynamicsNode(context=client.context, parameter_overrides=[
-        RosParameter(name, value=value) for name, value in (
-            ('robot_description_file', str(PENDULUM)), ('state_timeout', 0.5),
-            ('start_ramp', 0.0), ('stop_ramp', 0.1))])
+    node = DynamicsNode(
+        context=client.context,
+        parameter_overrides=[
+            RosParameter(name, value=value)
+            for name, value in (
+                ('robot_description_file', str(PENDULUM)),
+                ('state_timeout', 0.5),
+                ('start_ramp', 0.0),
+                ('stop_ramp', 0.1),
+            )
+        ],
+    )
     client.executor.add_node(node)
     client.record_commands()
 
@@ -385,23 +458,27 @@ def test_an_exception_on_the_way_of_the_torque_stops_the_output_and_the_node_liv
         client.until_heard(publish)
         assert client.enable(True, publish).success
         client.until(client.output_is('ACTIVE'), publish)
-        client.until(lambda: client.commands and client.commands[-1][1] == [
-            pytest.approx(0.5 * 3 * 0.7 * 9.81)], publish)
+        client.until(
+            lambda: (
+                client.commands and client.commands[-1][1] == [pytest.approx(0.5 * 3 * 0.7 * 9.81)]
+            ),
+            publish,
+        )
+
     try:
         active()
         compensation = node.path.compensation
-        node.path.compensation = SimpleNamespace(torques=lambda q, qd: 1 / 0,
-                                                 needs_velocity=False)
+        node.path.compensation = SimpleNamespace(torques=lambda q, qd: 1 / 0, needs_velocity=False)
         client.until(client.output_is('FAULT'), publish)
-        assert client.outputs[-1].reason == (
-            'internal error in _received: division by zero')
+        assert client.outputs[-1].reason == ('internal error in _received: division by zero')
         assert client.commands[-1][1] == [0.0]
         assert 'ZeroDivisionError' in capfd.readouterr().err
         node.path.compensation = compensation
         active()
         bad = np.array([np.nan])
-        node.path.compensation = SimpleNamespace(torques=lambda q, qd: (bad, bad),
-                                                 needs_velocity=False)
+        node.path.compensation = SimpleNamespace(
+            torques=lambda q, qd: (bad, bad), needs_velocity=False
+        )
         client.until(client.output_is('FAULT'), publish)
         assert client.outputs[-1].reason.startswith('invalid effort: expected finite efforts')
         assert np.isfinite([command for _, command in client.commands]).all()

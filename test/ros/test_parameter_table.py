@@ -16,23 +16,30 @@ def test_defaults_pass_their_own_checks():
     assert values['gravity'] == (0.0, 0.0, -9.81)
 
 
-@pytest.mark.parametrize('name, value, message', [
-    ('gravity', [0, 0], 'gravity: expected 3 numbers'),
-    ('gravity', [0, 0, 'down'], 'gravity: expected a number'),
-    ('gravity', [0.0, 0.0, float('nan')], 'gravity: expected a number >= -20 and <= 20, got nan'),
-    ('gravity', [15.0, 15.0, 0.0], r'gravity: expected at most 20 m/s\^2, got 21.21'),
-    ('gravity', 'down', 'gravity: expected a list of numbers'),
-    ('state_timeout', 0.0, 'state_timeout: expected a number > 0 and <= 10, got 0.0'),
-    ('state_timeout', True, 'state_timeout: expected a number, got True'),
-    ('start_ramp', -1, 'start_ramp: expected a number >= 0'),
-    ('stop_behavior', 'faint', "expected one of ramp_to_zero, hold, zero, got 'faint'"),
-    ('effort_limits', [1.0, 0.0], 'effort_limits: expected a finite number > 0, got 0.0'),
-    ('effort_limits', [True], 'effort_limits: expected a number'),
-    ('joints', ['a', ''], 'joints: expected a list of texts that are not empty'),
-    ('joints', 'a', "joints: expected a list of texts, got 'a'"),
-    ('enable_on_start', 'yes', 'enable_on_start: expected true or false'),
-    ('command_topic', 3, 'command_topic: expected a text'),
-])
+@pytest.mark.parametrize(
+    'name, value, message',
+    [
+        ('gravity', [0, 0], 'gravity: expected 3 numbers'),
+        ('gravity', [0, 0, 'down'], 'gravity: expected a number'),
+        (
+            'gravity',
+            [0.0, 0.0, float('nan')],
+            'gravity: expected a number >= -20 and <= 20, got nan',
+        ),
+        ('gravity', [15.0, 15.0, 0.0], r'gravity: expected at most 20 m/s\^2, got 21.21'),
+        ('gravity', 'down', 'gravity: expected a list of numbers'),
+        ('state_timeout', 0.0, 'state_timeout: expected a number > 0 and <= 10, got 0.0'),
+        ('state_timeout', True, 'state_timeout: expected a number, got True'),
+        ('start_ramp', -1, 'start_ramp: expected a number >= 0'),
+        ('stop_behavior', 'faint', "expected one of ramp_to_zero, hold, zero, got 'faint'"),
+        ('effort_limits', [1.0, 0.0], 'effort_limits: expected a finite number > 0, got 0.0'),
+        ('effort_limits', [True], 'effort_limits: expected a number'),
+        ('joints', ['a', ''], 'joints: expected a list of texts that are not empty'),
+        ('joints', 'a', "joints: expected a list of texts, got 'a'"),
+        ('enable_on_start', 'yes', 'enable_on_start: expected true or false'),
+        ('command_topic', 3, 'command_topic: expected a text'),
+    ],
+)
 def test_a_wrong_value_is_refused_with_the_reason(name, value, message):
     with pytest.raises(ParameterError, match=message):
         check_all({name: value})

@@ -9,8 +9,13 @@ from support.processes import Client
 @pytest.fixture
 def given():
     """Return a node that was started with two names that nobody declares."""
-    client = Client('misspelt', parameter_overrides=[
-        RosParameter('effort_limit', value=[1.0]), RosParameter('colour', value='red')])
+    client = Client(
+        'misspelt',
+        parameter_overrides=[
+            RosParameter('effort_limit', value=[1.0]),
+            RosParameter('colour', value='red'),
+        ],
+    )
     yield client.node
     client.close()
 
@@ -18,8 +23,9 @@ def given():
 def test_a_misspelt_name_is_warned_of_and_what_others_use_is_not(given, capfd):
     Parameters(given)
     said = capfd.readouterr().err
-    assert ("there is no parameter 'effort_limit', and its value is ignored: is 'effort_limits' "
-            'meant?') in said
+    assert (
+        "there is no parameter 'effort_limit', and its value is ignored: is 'effort_limits' meant?"
+    ) in said
     assert 'colour' not in said
 
 

@@ -28,8 +28,9 @@ def rig(tmp_path_factory):
     """Return the rig; the node believes that the hand is empty."""
     urdf = tmp_path_factory.mktemp('robot') / 'with_tool.urdf'
     urdf.write_text(with_payload_link(ARM7.read_text(), 'hand', MASS, COM, TENSOR))
-    rig = Rig(urdf=urdf, robot_description_file=ARM7, state_timeout=0.5, start_ramp=0.2,
-              stop_ramp=0.2)
+    rig = Rig(
+        urdf=urdf, robot_description_file=ARM7, state_timeout=0.5, start_ramp=0.2, stop_ramp=0.2
+    )
     yield rig
     rig.during(0.2)
     rig.client.settle(everything=True)
@@ -39,14 +40,20 @@ def rig(tmp_path_factory):
 
 def carry(rig, link='', inertia=None):
     """Call ~/set_payload."""
-    return rig.client.call(SetPayload, '/dynamics_node/set_payload',
-                           SetPayload.Request(link=link, inertia=inertia or Inertia()))
+    return rig.client.call(
+        SetPayload,
+        '/dynamics_node/set_payload',
+        SetPayload.Request(link=link, inertia=inertia or Inertia()),
+    )
 
 
 def set_parameter(client, name, value):
     """Set a parameter of the node; return why it is refused."""
-    answer = client.call(SetParameters, '/dynamics_node/set_parameters', SetParameters.Request(
-        parameters=[Parameter(name, value=value).to_parameter_msg()]))
+    answer = client.call(
+        SetParameters,
+        '/dynamics_node/set_parameters',
+        SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()]),
+    )
     assert not answer.results[0].successful
     return answer.results[0].reason
 
@@ -96,14 +103,19 @@ def test_set_moved_and_removed_in_a_loop(floating):
     assert client.judge.violations == []
     # What the node sends is what the model with the tool needs, where the arm is now.
     model = RobotModel.from_urdf(ARM7).with_payload('hand', MASS, COM, TENSOR)
-    rig.until(lambda: client.state[2] == pytest.approx(
-        model.gravity_torque(client.state[0]), abs=0.01))
+    rig.until(
+        lambda: client.state[2] == pytest.approx(model.gravity_torque(client.state[0]), abs=0.01)
+    )
     # And without it, to the last bit that of the URDF.
     rig.catch()
     assert carry(rig).success
     plain = RobotModel.from_urdf(ARM7)
-    rig.until(lambda: client.state[2] == pytest.approx(
-        plain.gravity_torque(client.state[0]), rel=0, abs=1e-12))
+    rig.until(
+        lambda: (
+            client.state[2]
+            == pytest.approx(plain.gravity_torque(client.state[0]), rel=0, abs=1e-12)
+        )
+    )
 
 
 def test_what_the_arm_cannot_hold_is_refused_while_output_is_on(floating):
@@ -116,8 +128,9 @@ def test_what_the_arm_cannot_hold_is_refused_while_output_is_on(floating):
     assert not answer.success
     assert 'inertia.m: expected a number >= 0 and <= 100000' in answer.message
     upwards = Vector3Stamped(vector=Vector3(z=9.81))
-    answer = client.call(SetGravity, '/dynamics_node/set_gravity',
-                         SetGravity.Request(gravity=upwards))
+    answer = client.call(
+        SetGravity, '/dynamics_node/set_gravity', SetGravity.Request(gravity=upwards)
+    )
     assert not answer.success
     assert 'points up in the frame of the root link' in answer.message
     assert answer.gravity.vector.z == -9.81

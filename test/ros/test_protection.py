@@ -35,26 +35,38 @@ def listener(inactive=(), is_controller=True):
 def parts():
     path = Path()
     parts = SimpleNamespace(
-        path=path, conflicts=[], refusals=[], next_listeners={'/controller': listener()},
-        errors=[])
+        path=path, conflicts=[], refusals=[], next_listeners={'/controller': listener()}, errors=[]
+    )
     controllers = SimpleNamespace(
-        listeners=dict(parts.next_listeners), refusals=lambda names: parts.refusals,
-        has_listener=lambda: bool(controllers.listeners), renewed=[],
-        takes_commands=lambda: any(not item.inactive()
-                                   for item in controllers.listeners.values()))
+        listeners=dict(parts.next_listeners),
+        refusals=lambda names: parts.refusals,
+        has_listener=lambda: bool(controllers.listeners),
+        renewed=[],
+        takes_commands=lambda: any(not item.inactive() for item in controllers.listeners.values()),
+    )
 
     def update():
-        gone = [name for name, item in controllers.listeners.items()
-                if item.is_controller and name not in parts.next_listeners]
+        gone = [
+            name
+            for name, item in controllers.listeners.items()
+            if item.is_controller and name not in parts.next_listeners
+        ]
         controllers.listeners = dict(parts.next_listeners)
         return gone
+
     controllers.update = update
     parts.controllers = controllers
-    node = SimpleNamespace(create_timer=lambda *_, **__: None, get_logger=lambda: SimpleNamespace(
-        error=parts.errors.append))
-    parts.unit = Protection(node, SimpleNamespace(path=path),
-                            SimpleNamespace(conflicts=lambda: parts.conflicts), controllers,
-                            lambda: SimpleNamespace(joint_names=('a',)))
+    node = SimpleNamespace(
+        create_timer=lambda *_, **__: None,
+        get_logger=lambda: SimpleNamespace(error=parts.errors.append),
+    )
+    parts.unit = Protection(
+        node,
+        SimpleNamespace(path=path),
+        SimpleNamespace(conflicts=lambda: parts.conflicts),
+        controllers,
+        lambda: SimpleNamespace(joint_names=('a',)),
+    )
     return parts
 
 
@@ -88,8 +100,7 @@ def test_a_controller_that_is_deactivated_or_gone_ends_it(parts):
     assert parts.path.told[0] == ('lost', '/controller no longer listens to the commands')
 
 
-@pytest.mark.parametrize('others', [
-    {}, {'/controller': listener(['/controller is inactive'])}])
+@pytest.mark.parametrize('others', [{}, {'/controller': listener(['/controller is inactive'])}])
 def test_a_second_controller_that_still_listens_gets_the_whole_stop(parts, others):
     parts.next_listeners = {'/controller': listener(), '/second': listener()}
     parts.unit.check()
@@ -137,6 +148,7 @@ def test_a_controller_that_was_started_again_gets_the_ramp(parts):
 def test_a_search_that_fails_is_no_search(parts):
     def fail():
         raise RuntimeError('no graph')
+
     parts.controllers.update = fail
     for _ in range(10):
         parts.unit.check()

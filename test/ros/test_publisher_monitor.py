@@ -9,8 +9,10 @@ from support.processes import Client
 
 def monitor(client, states=None, allow=False):
     """Return a monitor of the topics of a client."""
-    states = states or SimpleNamespace(topic='/joint_states', count_publishers=lambda: (
-        client.node.count_publishers('/joint_states')))
+    states = states or SimpleNamespace(
+        topic='/joint_states',
+        count_publishers=lambda: client.node.count_publishers('/joint_states'),
+    )
     source = SimpleNamespace(topic='/described')
     return PublisherMonitor(client.node, '/efforts', states, source, allow)
 
@@ -24,13 +26,19 @@ def test_other_sources_of_efforts_and_states_are_named(client):
     try:
         other.node.create_publisher(Float64MultiArray, 'efforts', 1)
         # Its name comes some time after it.
-        client.until(lambda: len(unit.conflicts()) == 2
-                     and all('joint_state_publisher' in text for text in unit.conflicts()))
+        client.until(
+            lambda: (
+                len(unit.conflicts()) == 2
+                and all('joint_state_publisher' in text for text in unit.conflicts())
+            )
+        )
         efforts, joint_states = unit.conflicts()
     finally:
         other.close()
-    assert efforts == ('1 other publisher(s) on /efforts (/joint_state_publisher): two sources '
-                       'of effort would fight')
+    assert efforts == (
+        '1 other publisher(s) on /efforts (/joint_state_publisher): two sources '
+        'of effort would fight'
+    )
     assert joint_states.startswith('2 publishers on /joint_states (/joint_state_publisher')
     client.until(lambda: unit.conflicts() == [])
 
@@ -41,8 +49,9 @@ def test_another_node_of_the_same_name_is_named_too(client):
     try:
         other.node.create_publisher(Float64MultiArray, 'efforts', 1)
         unit = monitor(client)
-        client.until(lambda: any(f'(/{client.node.get_name()})' in text
-                                 for text in unit.conflicts()))
+        client.until(
+            lambda: any(f'(/{client.node.get_name()})' in text for text in unit.conflicts())
+        )
     finally:
         other.close()
 
@@ -61,8 +70,9 @@ def test_a_second_publisher_of_descriptions_is_a_conflict(client):
     other = Client('second_robot_state_publisher')
     try:
         other.node.create_publisher(String, '/described', 1)
-        client.until(lambda: 'second_robot_state_publisher' in ''.join(
-            unit.description_conflicts()))
+        client.until(
+            lambda: 'second_robot_state_publisher' in ''.join(unit.description_conflicts())
+        )
         [text] = unit.description_conflicts()
     finally:
         other.close()

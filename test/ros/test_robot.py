@@ -16,7 +16,7 @@ def test_a_mass_matrix_that_is_not_positive_definite_is_noticed():
     massless = TEXT.replace('<mass value="3"/>', '<mass value="0"/>')
     for axis in ('ixx', 'iyy', 'izz'):
         start = massless.index(f'{axis}="') + len(axis) + 2
-        massless = massless[:start] + '0' + massless[massless.index('"', start):]
+        massless = massless[:start] + '0' + massless[massless.index('"', start) :]
     robot = Robot(RobotModel.from_urdf(massless), ())
     assert robot.model.mass_matrix(np.zeros(1)) == [[0.0]]
     assert not robot.is_mass_matrix_positive_definite()
@@ -43,8 +43,10 @@ def test_the_measured_position_is_refused_while_a_chosen_joint_is_not_fresh():
     with pytest.raises(StateUnavailableError, match=f'within 0.1 s for {chosen[1]}'):
         robot.measured_position(0.05, 0.1)
     robot.state_publishers = 2
-    with pytest.raises(StateUnavailableError, match=(
-            r'; 2 nodes publish joint_states: if .* set allow_several_state_publishers')):
+    with pytest.raises(
+        StateUnavailableError,
+        match=(r'; 2 nodes publish joint_states: if .* set allow_several_state_publishers'),
+    ):
         robot.measured_position(0.05, 0.1)
     robot.buffer.update(0.05, [chosen[1]], [0.5])
     q = robot.measured_position(0.05, 0.1)

@@ -27,11 +27,15 @@ def dynamics():
 
 
 def test_every_controller_has_a_type_and_parameters(control):
-    types = {name: value['type'] for name, value in control['controller_manager'].items()
-             if isinstance(value, dict)}
+    types = {
+        name: value['type']
+        for name, value in control['controller_manager'].items()
+        if isinstance(value, dict)
+    }
     assert types == {
         'joint_state_broadcaster': 'joint_state_broadcaster/JointStateBroadcaster',
-        'forward_effort_controller': 'forward_command_controller/ForwardCommandController'}
+        'forward_effort_controller': 'forward_command_controller/ForwardCommandController',
+    }
     assert set(control) == {'controller_manager', *types}
 
 
@@ -60,8 +64,12 @@ def test_ros_reads_the_file_whatever_the_namespace(control, namespace):
     rclpy.init(args=['--ros-args', '--params-file', str(FILE)], context=context)
     try:
         for name, expected in control.items():
-            node = rclpy.create_node(name, context=context, namespace=namespace,
-                                     automatically_declare_parameters_from_overrides=True)
+            node = rclpy.create_node(
+                name,
+                context=context,
+                namespace=namespace,
+                automatically_declare_parameters_from_overrides=True,
+            )
             read = {key: node.get_parameter(key).value for key in flat(expected)}
             node.destroy_node()
             assert read == flat(expected)
@@ -71,6 +79,8 @@ def test_ros_reads_the_file_whatever_the_namespace(control, namespace):
 
 def flat(parameters):
     """Return nested parameters with dots in their names."""
-    return {f'{name}.{inner}' if inner else name: item
-            for name, value in parameters.items()
-            for inner, item in (flat(value) if isinstance(value, dict) else {'': value}).items()}
+    return {
+        f'{name}.{inner}' if inner else name: item
+        for name, value in parameters.items()
+        for inner, item in (flat(value) if isinstance(value, dict) else {'': value}).items()
+    }

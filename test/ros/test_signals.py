@@ -22,8 +22,13 @@ print(signals.name)
 def run(name, more=''):
     """Run code that gets a signal; return exit code, output and duration."""
     begin = time.monotonic()
-    done = subprocess.run([sys.executable, '-c', CODE.format(name=name, more=more)],
-                          capture_output=True, text=True, timeout=30.0, check=False)
+    done = subprocess.run(
+        [sys.executable, '-c', CODE.format(name=name, more=more)],
+        capture_output=True,
+        text=True,
+        timeout=30.0,
+        check=False,
+    )
     return done.returncode, done.stdout, done.stderr, time.monotonic() - begin
 
 
@@ -50,26 +55,34 @@ def test_a_second_signal_is_counted_and_the_third_ends_the_process():
 
 def test_a_terminal_that_closes_is_ignored_under_nohup():
     code = ('import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n' + CODE).format(
-        name='TERM', more='print(signal.getsignal(signal.SIGHUP) == signal.SIG_IGN)')
-    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
-                          timeout=30.0, check=False)
+        name='TERM', more='print(signal.getsignal(signal.SIGHUP) == signal.SIG_IGN)'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=30.0, check=False
+    )
     assert done.stdout == 'SIGTERM\nTrue\n'
 
 
 def test_a_wait_that_is_gone_is_no_error():
-    code = CODE.replace('signals.call(woken.set)', """
+    code = CODE.replace(
+        'signals.call(woken.set)',
+        """
 def gone():
     woken.set()
     raise RuntimeError('destroyed')
-signals.call(gone)""").format(name='INT', more='time.sleep(0.1)')
-    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
-                          timeout=30.0, check=False)
+signals.call(gone)""",
+    ).format(name='INT', more='time.sleep(0.1)')
+    done = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=30.0, check=False
+    )
     assert (done.returncode, done.stdout, done.stderr) == (0, 'SIGINT\n', '')
 
 
 def test_sigint_counts_in_a_background_job_where_shells_ignore_it():
     code = ('import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n' + CODE).format(
-        name='INT', more='')
-    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
-                          timeout=30.0, check=False)
+        name='INT', more=''
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=30.0, check=False
+    )
     assert done.stdout == 'SIGINT\n'

@@ -22,13 +22,17 @@ ASKED = '/forward_effort_controller/get_parameters'
 def graph(client, namespace='/', name='dynamics_node'):
     """Return what a node does, as seen from another one: permission → full names."""
     node = client.node
-    questions = {'publish': node.get_publisher_names_and_types_by_node,
-                 'subscribe': node.get_subscriber_names_and_types_by_node,
-                 'reply': node.get_service_names_and_types_by_node,
-                 'request': node.get_client_names_and_types_by_node}
+    questions = {
+        'publish': node.get_publisher_names_and_types_by_node,
+        'subscribe': node.get_subscriber_names_and_types_by_node,
+        'reply': node.get_service_names_and_types_by_node,
+        'request': node.get_client_names_and_types_by_node,
+    }
     try:
-        return {permission: {used for used, _ in question(name, namespace)}
-                for permission, question in questions.items()}
+        return {
+            permission: {used for used, _ in question(name, namespace)}
+            for permission, question in questions.items()
+        }
     except NodeNameNonExistentError:
         return {permission: set() for permission in questions}
 
@@ -38,8 +42,11 @@ def without(names, *others):
 
 
 def difference(names, others):
-    return {permission: found - others.get(permission, set())
-            for permission, found in names.items() if found - others.get(permission, set())}
+    return {
+        permission: found - others.get(permission, set())
+        for permission, found in names.items()
+        if found - others.get(permission, set())
+    }
 
 
 def check(client, allowed, *optional, **node):
@@ -68,8 +75,9 @@ def test_a_node_at_work_does_no_more(client, start):
     start()
     controller = rclpy.create_node('forward_effort_controller', context=client.context)
     commands = []
-    controller.create_subscription(Float64MultiArray, 'forward_effort_controller/commands',
-                                   commands.append, 10)
+    controller.create_subscription(
+        Float64MultiArray, 'forward_effort_controller/commands', commands.append, 10
+    )
     client.executor.add_node(controller)
     allowed = read(POLICY.read_text()).allowed
     forbidden = []
@@ -77,6 +85,7 @@ def test_a_node_at_work_does_no_more(client, start):
     def state():
         client.publish(['hinge'], [0.5])
         forbidden.append(difference(graph(client), allowed))
+
     client.description.publish(String(data=PENDULUM.read_text()))
     client.until_heard(state)
     assert client.enable(True, state).success
@@ -88,8 +97,7 @@ def test_a_node_at_work_does_no_more(client, start):
 
 
 @pytest.mark.parametrize('namespace', ['/', '/left'])
-def test_the_markers_program_does_what_it_is_allowed_and_no_more(
-        client, start_markers, namespace):
+def test_the_markers_program_does_what_it_is_allowed_and_no_more(client, start_markers, namespace):
     start_markers(f'__ns:={namespace}', use_sim_time='true')
     client.listen(MarkerArray, f'{namespace.rstrip("/")}/dynamics_node/markers')
     allowed = read(MARKERS_POLICY.read_text(), namespace=namespace).allowed
@@ -118,11 +126,21 @@ def test_the_document_names_the_enclave_of_the_file():
     assert re.findall(r'--enclave (\S+)', text) == [enclave]
 
 
-@pytest.mark.parametrize(('before', 'after'), [
-    ('0.2.0', '0.1.0'), ('publish=', 'write='), ('ALLOW', 'PERMIT'), (' reply="ALLOW"', ''),
-    ('<service>~/enable</service>', '<topic>~/enable</topic>'), ('>~/state<', '>~/dynamics<'),
-    ('>joint_states<', '>*<'), (' node="dynamics_node"', ''), ('"/dynamics_node"', '""'),
-], ids=lambda text: text)
+@pytest.mark.parametrize(
+    ('before', 'after'),
+    [
+        ('0.2.0', '0.1.0'),
+        ('publish=', 'write='),
+        ('ALLOW', 'PERMIT'),
+        (' reply="ALLOW"', ''),
+        ('<service>~/enable</service>', '<topic>~/enable</topic>'),
+        ('>~/state<', '>~/dynamics<'),
+        ('>joint_states<', '>*<'),
+        (' node="dynamics_node"', ''),
+        ('"/dynamics_node"', '""'),
+    ],
+    ids=lambda text: text,
+)
 def test_a_damaged_policy_is_refused(before, after):
     text = POLICY.read_text()
     assert before in text

@@ -14,31 +14,49 @@ from sensor_msgs.msg import JointState
 from support.processes import Client
 from support.robots import PENDULUM
 
-LIMITED = PENDULUM.read_text().replace('type="continuous"', 'type="revolute"').replace(
-    '<limit ', '<limit lower="-1" upper="1" ')
+LIMITED = (
+    PENDULUM.read_text()
+    .replace('type="continuous"', 'type="revolute"')
+    .replace('<limit ', '<limit lower="-1" upper="1" ')
+)
 
 
 class Receiver:
     """A node with nothing but the input, in this process."""
 
     def __init__(self, raw, **overrides):
-        self.client = Client('receiver', parameter_overrides=[
-            Parameter(f'qos_overrides./joint_states.subscription.{name}', value=value)
-            for name, value in overrides.items()])
+        self.client = Client(
+            'receiver',
+            parameter_overrides=[
+                Parameter(f'qos_overrides./joint_states.subscription.{name}', value=value)
+                for name, value in overrides.items()
+            ],
+        )
         self.robot = Robot(RobotModel.from_urdf(LIMITED), ())
         # A busy machine may take its time from one process to the other.
         settings = OutputSettings(5.0, 0.0, 0.0, 'ramp_to_zero')
         self.path = TorquePath(settings)
         self.path.use(self.robot.buffer)
-        self.path.configure(0.0, settings, self.robot.compensation(check_all({})), EffortLimiter(
-            np.ones(1), np.ones(1), np.ones(1), ('hinge',)), self.robot.motion_limits(()))
+        self.path.configure(
+            0.0,
+            settings,
+            self.robot.compensation(check_all({})),
+            EffortLimiter(np.ones(1), np.ones(1), np.ones(1), ('hinge',)),
+            self.robot.motion_limits(()),
+        )
         self.received, self.errors, self.warnings = [], [], []
         node = self.client.node
         node.destroy_publisher(self.client.states)
-        self.input = StateInput(node, {'allow_several_state_publishers': False},
-                                SimpleNamespace(path=self.path), self, raw)
-        self.input.logger = SimpleNamespace(warning=self.warnings.append, info=lambda _: None,
-                                            error=self.errors.append)
+        self.input = StateInput(
+            node,
+            {'allow_several_state_publishers': False},
+            SimpleNamespace(path=self.path),
+            self,
+            raw,
+        )
+        self.input.logger = SimpleNamespace(
+            warning=self.warnings.append, info=lambda _: None, error=self.errors.append
+        )
 
     def on_state(self, stamp):
         """Note a usable state."""
@@ -61,9 +79,11 @@ def receiver(request):
 
 def at(client, *positions):
     """Return an action that publishes states."""
+
     def publish():
         for position in positions:
             client.publish(['hinge'], [position])
+
     return publish
 
 
@@ -106,6 +126,7 @@ def test_what_is_dropped_is_warned_about_once_a_second_by_its_kind(client, recei
         client.until(lambda: receiver.robot.buffer.rejected['length'], receiver.spin)
         client.publish(['hinge', 'hinge'], [0.0, 0.0])
         client.until(lambda: receiver.robot.buffer.rejected['name twice'], receiver.spin)
+
     for _ in range(3):
         bad()
     assert [text.split(':')[0] for text in receiver.warnings] == ['joint state dropped'] * 2
@@ -116,8 +137,9 @@ def test_an_exception_in_the_callback_is_told_and_the_next_state_is_taken(client
     until_received(client, receiver, 0.0)
     receiver.robot.buffer.runaway = lambda: 1 / 0
     client.until(lambda: receiver.errors, lambda: (at(client, 0.0)(), receiver.spin()))
-    assert any('internal error in ' in text and 'division by zero' in text
-               for text in receiver.errors)
+    assert any(
+        'internal error in ' in text and 'division by zero' in text for text in receiver.errors
+    )
     del receiver.robot.buffer.runaway
     until_received(client, receiver, 0.0)
 
@@ -162,8 +184,9 @@ def test_an_arm_that_rests_beyond_its_limit_does_not_fill_the_log(client, receiv
     assert sum('beyond the position limits' in text for text in receiver.warnings) == 1
 
 
-def test_two_publishers_share_a_queue_in_which_no_state_takes_the_place_of_another(client,
-                                                                                  receiver):
+def test_two_publishers_share_a_queue_in_which_no_state_takes_the_place_of_another(
+    client, receiver
+):
     gripper = Client('gripper')
     rounds, heard = iter(range(10**6)), receiver.robot.buffer
 
@@ -173,13 +196,17 @@ def test_two_publishers_share_a_queue_in_which_no_state_takes_the_place_of_anoth
         gripper.publish(['finger'], [0.0])
         gripper.publish(['finger'], [0.0])
         return position
+
     try:
         # Discovered both, and the new subscription by both.
         client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 2)
-        client.until(lambda: heard.newest_names == ('hinge',), lambda: (at(client, 0.0)(),
-                                                                        receiver.spin()))
-        client.until(lambda: heard.newest_names == ('finger',),
-                     lambda: (gripper.publish(['finger'], [0.0]), receiver.spin()))
+        client.until(
+            lambda: heard.newest_names == ('hinge',), lambda: (at(client, 0.0)(), receiver.spin())
+        )
+        client.until(
+            lambda: heard.newest_names == ('finger',),
+            lambda: (gripper.publish(['finger'], [0.0]), receiver.spin()),
+        )
         client.during(0.05, receiver.spin)
         for _ in range(20):
             accepted, position = heard.accepted, together()
@@ -198,8 +225,7 @@ def test_two_publishers_share_a_queue_in_which_no_state_takes_the_place_of_anoth
     until_received(client, receiver, 0.0)
     at(client, *(0.001 * i for i in range(9)))()
     client.during(0.02)
-    client.until(lambda: receiver.received and receiver.received[-1][0] == [0.008],
-                 receiver.spin)
+    client.until(lambda: receiver.received and receiver.received[-1][0] == [0.008], receiver.spin)
     assert len(receiver.received) == 1
 
 

@@ -46,8 +46,11 @@ def message(time, positions, velocities=None, accelerations=None, names=ARM.join
 
 def ask(client, trajectory, **flags):
     """Call ~/compute_trajectory_effort."""
-    return client.call(ComputeTrajectoryEffort, '/dynamics_node/compute_trajectory_effort',
-                       ComputeTrajectoryEffort.Request(trajectory=trajectory, **flags))
+    return client.call(
+        ComputeTrajectoryEffort,
+        '/dynamics_node/compute_trajectory_effort',
+        ComputeTrajectoryEffort.Request(trajectory=trajectory, **flags),
+    )
 
 
 def efforts(answer):
@@ -64,10 +67,12 @@ def test_every_point_gets_its_effort_and_stays_what_it_was(shared):
     sent = message(time, q[:, order], qd[:, order], qdd[:, order], names)
     answer = ask(shared, sent)
     judge = MujocoOracle(ARM7.read_text())
-    expected = np.array([judge.inverse_dynamics(ARM.joint_names, *state)
-                         for state in zip(q, qd, qdd, strict=True)])[:, order]
-    np.testing.assert_allclose(efforts(answer), expected, rtol=0,
-                               atol=1e-11 * np.abs(expected).max())
+    expected = np.array(
+        [judge.inverse_dynamics(ARM.joint_names, *state) for state in zip(q, qd, qdd, strict=True)]
+    )[:, order]
+    np.testing.assert_allclose(
+        efforts(answer), expected, rtol=0, atol=1e-11 * np.abs(expected).max()
+    )
     assert answer.message.split(';')[0] == 'all velocities and accelerations were given'
     assert answer.trajectory.joint_names == names
     for before, after in zip(sent.points, answer.trajectory.points, strict=True):
@@ -96,8 +101,9 @@ def test_gravity_and_friction_are_switched_by_the_request(shared):
     time = np.linspace(0.0, 1.0, 5)
     q, qd, qdd = motion(time)
     trajectory = message(time, q, qd, qdd)
-    difference = efforts(ask(shared, trajectory)) - efforts(ask(shared, trajectory,
-                                                                without_gravity=True))
+    difference = efforts(ask(shared, trajectory)) - efforts(
+        ask(shared, trajectory, without_gravity=True)
+    )
     assert difference == pytest.approx(ARM.gravity_torque(q), abs=1e-11)
     answer = ask(shared, trajectory, with_friction=True)
     assert answer.message.split(';')[0] == 'with friction'
@@ -121,8 +127,10 @@ def test_points_and_joints_above_their_limit_are_named(shared):
 
 
 def test_a_joint_that_stands_still_is_judged_as_well(shared):
-    names, moved = ('elbow_pitch', 'shoulder_yaw'), [ARM.joint_names.index('elbow_pitch'),
-                                                     ARM.joint_names.index('shoulder_yaw')]
+    names, moved = (
+        ('elbow_pitch', 'shoulder_yaw'),
+        [ARM.joint_names.index('elbow_pitch'), ARM.joint_names.index('shoulder_yaw')],
+    )
     q, qd, qdd = np.zeros((3, 2, 2))
     qdd[1, 0] = 100.0
     sent = message([0.0, 1.0], q, qd, qdd, names)
@@ -140,13 +148,16 @@ def test_a_joint_that_stands_still_is_judged_as_well(shared):
     assert list(answer.points_over_limit) == [1]
     assert answer.joints_over_limit == ['shoulder_pitch']
     assert len(answer.peak_effort) == len(answer.effort_limits) == 2
-    assert ('1 point above the effort limit of shoulder_pitch (not in the trajectory: up to '
-            f'{tau[1, pitch]:.6g} of {limits[pitch]:.6g})') in answer.message
+    assert (
+        '1 point above the effort limit of shoulder_pitch (not in the trajectory: up to '
+        f'{tau[1, pitch]:.6g} of {limits[pitch]:.6g})'
+    ) in answer.message
     answer = largest(shared, trajectory=sent, link='hand')
     assert (answer.mass, answer.limiting_joint) == (0.0, 'shoulder_pitch')
-    assert ('shoulder_pitch is not in joint_names: it needs '
-            f'{ARM.inverse_dynamics(*whole)[1, pitch]:.6g} of {limits[pitch]:.6g}'
-            ) in answer.message
+    assert (
+        'shoulder_pitch is not in joint_names: it needs '
+        f'{ARM.inverse_dynamics(*whole)[1, pitch]:.6g} of {limits[pitch]:.6g}'
+    ) in answer.message
 
 
 def test_positions_of_a_trajectory_beyond_their_limits_are_named(shared):
@@ -155,8 +166,9 @@ def test_positions_of_a_trajectory_beyond_their_limits_are_named(shared):
     lower, upper = ARM.position_limits[-1]
     answer = ask(shared, message([0.0, 1.0, 2.0], q, 0 * q, 0 * q))
     assert answer.success
-    assert (f'; beyond the position limits: {ARM.joint_names[-1]} at 5 (limits {lower:g} to '
-            f'{upper:g})') in answer.message
+    assert (
+        f'; beyond the position limits: {ARM.joint_names[-1]} at 5 (limits {lower:g} to {upper:g})'
+    ) in answer.message
 
 
 def test_some_joints_move_the_others_stand_where_they_are(client, start):
@@ -170,8 +182,10 @@ def test_some_joints_move_the_others_stand_where_they_are(client, start):
     whole[:, [2, 1]], rates[:, [2, 1]], changes[:, [2, 1]] = q, qd, qdd
     expected = ARM.inverse_dynamics(whole, rates, changes)[:, [2, 1]]
     np.testing.assert_allclose(efforts(answer), expected, rtol=0, atol=1e-12)
-    assert ('; taken where last measured, or neutral if never: '
-            + ', '.join(ARM.joint_names[i] for i in (0, 3, 4, 5, 6, 7))) in answer.message
+    assert (
+        '; taken where last measured, or neutral if never: '
+        + ', '.join(ARM.joint_names[i] for i in (0, 3, 4, 5, 6, 7))
+    ) in answer.message
     # No names: the chosen joints.
     q4, qd4, qdd4 = (values[:, :4] for values in motion(time))
     answer = ask(client, message(time, q4, qd4, qdd4, names=[]))
@@ -191,19 +205,26 @@ def test_what_is_no_trajectory_is_refused_in_words(shared):
     short.points[1].velocities = [1.0]
     without = message(time, q)
     without.points[2].positions = []
-    cases = [(JointTrajectory(), 'expected at least one point, got none'),
-             (backwards, 'time: point 2: expected more than 1.0 s'),
-             (short, r'trajectory.points[1].velocities: expected 8 numbers for'),
-             (without, r'trajectory.points[2].positions: expected 8 numbers'),
-             (message(time, nan, qd, qdd), 'trajectory.points[1].positions: expected finite '
-              f'numbers, or none; got nan for {ARM.joint_names[2]}'),
-             (no_rates, 'trajectory.points[1].velocities: expected finite numbers, or none; got'),
-             (message(time, q, names=[*ARM.joint_names[:-1], 'elbow_pich']),
-              "'elbow_pich' is not a joint that can be moved, is 'elbow_pitch' meant?"),
-             (message(time, q, qd, nan), 'trajectory.points[1].accelerations: expected finite'),
-             (message(time, q[:, :1], names=['\x1b[2J']), r"'\x1b[2J' is not a joint"),
-             (message(time, q[:, :1], names=['nose']), "'nose' is not a joint"),
-             (message(time, q, 1e300 + qd, qdd), 'the result is not finite')]
+    cases = [
+        (JointTrajectory(), 'expected at least one point, got none'),
+        (backwards, 'time: point 2: expected more than 1.0 s'),
+        (short, r'trajectory.points[1].velocities: expected 8 numbers for'),
+        (without, r'trajectory.points[2].positions: expected 8 numbers'),
+        (
+            message(time, nan, qd, qdd),
+            'trajectory.points[1].positions: expected finite '
+            f'numbers, or none; got nan for {ARM.joint_names[2]}',
+        ),
+        (no_rates, 'trajectory.points[1].velocities: expected finite numbers, or none; got'),
+        (
+            message(time, q, names=[*ARM.joint_names[:-1], 'elbow_pich']),
+            "'elbow_pich' is not a joint that can be moved, is 'elbow_pitch' meant?",
+        ),
+        (message(time, q, qd, nan), 'trajectory.points[1].accelerations: expected finite'),
+        (message(time, q[:, :1], names=['\x1b[2J']), r"'\x1b[2J' is not a joint"),
+        (message(time, q[:, :1], names=['nose']), "'nose' is not a joint"),
+        (message(time, q, 1e300 + qd, qdd), 'the result is not finite'),
+    ]
     for trajectory, reason in cases:
         answer = ask(shared, trajectory)
         assert not answer.success
@@ -222,7 +243,9 @@ def test_a_long_one_is_refused_while_efforts_are_sent():
     def answer():
         return services.compute_trajectory_effort(
             ComputeTrajectoryEffort.Request(trajectory=trajectory),
-            ComputeTrajectoryEffort.Response())
+            ComputeTrajectoryEffort.Response(),
+        )
+
     refused = answer()
     assert not refused.success
     assert 'expected at most 1000 points while the output is on' in refused.message
@@ -238,15 +261,28 @@ def test_a_long_one_is_refused_while_efforts_are_sent():
 
 def largest(client, **fields):
     """Call ~/get_max_payload."""
-    return client.call(GetMaxPayload, '/dynamics_node/get_max_payload',
-                       GetMaxPayload.Request(**fields))
+    return client.call(
+        GetMaxPayload, '/dynamics_node/get_max_payload', GetMaxPayload.Request(**fields)
+    )
 
 
 def scale(client, gains):
     """Set the parameter effort_scale."""
-    assert client.call(SetParameters, '/dynamics_node/set_parameters', SetParameters.Request(
-        parameters=[Parameter(name='effort_scale', value=ParameterValue(
-            type=8, double_array_value=gains))])).results[0].successful
+    assert (
+        client.call(
+            SetParameters,
+            '/dynamics_node/set_parameters',
+            SetParameters.Request(
+                parameters=[
+                    Parameter(
+                        name='effort_scale', value=ParameterValue(type=8, double_array_value=gains)
+                    )
+                ]
+            ),
+        )
+        .results[0]
+        .successful
+    )
 
 
 def test_with_the_largest_payload_pinocchio_is_at_the_limit(shared):

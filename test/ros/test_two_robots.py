@@ -27,12 +27,25 @@ class Arm:
         self.states = client.listen(JointState, f'/{side}/joint_states')
         self.torques = client.listen(JointState, f'/{side}/dynamics_node/gravity_torque')
         self.commands = client.listen(
-            Float64MultiArray, f'/{side}/forward_effort_controller/commands')
+            Float64MultiArray, f'/{side}/forward_effort_controller/commands'
+        )
         self.outputs = client.listen(OutputState, f'/{side}/dynamics_node/state', latched=True)
         self.simulation = subprocess.Popen(
-            [sys.executable, '-m', 'dynamics_node.ros.demo.simulated_robot', '--ros-args',
-             '-r', f'__ns:=/{side}', '-p', 'rate:=100.0'],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ))
+            [
+                sys.executable,
+                '-m',
+                'dynamics_node.ros.demo.simulated_robot',
+                '--ros-args',
+                '-r',
+                f'__ns:=/{side}',
+                '-p',
+                'rate:=100.0',
+            ],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env=dict(os.environ),
+        )
         # A busy machine does not trip it.
         self.node = NodeProcess(f'__ns:=/{side}', state_timeout=2.0)
 
@@ -101,16 +114,18 @@ def test_states_of_one_never_reach_the_other(client, arms):
             assert client.node.count_publishers(f'/{arm.side}/{topic}') == 1
     # What hears each topic is in the same namespace.
     for arm, other in ((left, right), (right, left)):
-        ends = (client.node.get_subscriptions_info_by_topic(f'/{arm.side}/joint_states')
-                + client.node.get_publishers_info_by_topic(f'/{arm.side}/joint_states'))
+        ends = client.node.get_subscriptions_info_by_topic(
+            f'/{arm.side}/joint_states'
+        ) + client.node.get_publishers_info_by_topic(f'/{arm.side}/joint_states')
         spaces = {end.node_namespace for end in ends if end.node_name != 'test_client'}
         assert spaces == {f'/{arm.side}'}
         assert f'/{other.side}' not in spaces
     # The left arm falls; torques of the right one stay to the last bit what they were.
     assert left.call(SetBool, 'simulated_robot/set_brakes', data=False).success
     start, right_torque = list(left.torques[-1].effort), list(right.torques[-1].effort)
-    client.until(lambda: max(abs(a - b) for a, b in zip(
-        left.torques[-1].effort, start, strict=True)) > 2.0)
+    client.until(
+        lambda: max(abs(a - b) for a, b in zip(left.torques[-1].effort, start, strict=True)) > 2.0
+    )
     heard = len(right.torques)
     client.until(lambda: len(right.torques) > heard + 20)
     assert list(right.torques[-1].effort) == pytest.approx(right_torque, abs=1e-9)
@@ -120,8 +135,13 @@ def test_the_document_says_what_is_tested_here():
     said = re.findall(r'`/(left|right)/([a-z_/]+)`', DOCUMENT)
     assert {side for side, _ in said} == set(SIDES)
     names = {name for _, name in said}
-    assert names >= {'joint_states', 'robot_description', 'forward_effort_controller/commands',
-                     'dynamics_node/gravity_torque', 'dynamics_node/enable'}
+    assert names >= {
+        'joint_states',
+        'robot_description',
+        'forward_effort_controller/commands',
+        'dynamics_node/gravity_torque',
+        'dynamics_node/enable',
+    }
     for side in SIDES:
         assert f'ros2 launch dynamics_node demo.launch.py namespace:={side}' in DOCUMENT
         assert f'ros2 run dynamics_node dynamics_node --ros-args -r __ns:=/{side}' in DOCUMENT

@@ -13,28 +13,35 @@ G = np.array([-40.0, 15.0, 0.5])  # N m
 
 def rest(unit, effort, torque=G, seconds=2.5, start=0.0, velocity=0.001):
     """Let the arm stand for a time; return whether something was found out."""
-    found = [unit.update(time, np.full(len(torque), velocity), np.array(effort), torque)
-             for time in start + np.arange(0.0, seconds, 0.1)]
+    found = [
+        unit.update(time, np.full(len(torque), velocity), np.array(effort), torque)
+        for time in start + np.arange(0.0, seconds, 0.1)
+    ]
     return any(found)
 
 
-@pytest.mark.parametrize('effort', [
-    G, 1.4 * G, 0.7 * G, G + [15.0, 5.0, 5.0],
-], ids=['torque', 'payload', 'lighter', 'contact'])
+@pytest.mark.parametrize(
+    'effort',
+    [G, 1.4 * G, 0.7 * G, G + [15.0, 5.0, 5.0]],
+    ids=['torque', 'payload', 'lighter', 'contact'],
+)
 def test_what_can_be_torque_is_believed(effort):
     unit = EffortAtRest(NAMES, LIMITS)
     assert rest(unit, effort)
     assert unit.doubt == ''
 
 
-@pytest.mark.parametrize('effort', [
-    0.0 * G, -G, 0.08 * G, 1000.0 * G, [0.1, -0.2, 0.0],
-], ids=['zeros', 'other sign', 'current', 'thousandths', 'without gravity'])
+@pytest.mark.parametrize(
+    'effort',
+    [0.0 * G, -G, 0.08 * G, 1000.0 * G, [0.1, -0.2, 0.0]],
+    ids=['zeros', 'other sign', 'current', 'thousandths', 'without gravity'],
+)
 def test_what_can_hardly_be_torque_is_doubted_with_both_numbers(effort):
     unit = EffortAtRest(NAMES, LIMITS)
     assert rest(unit, effort)
-    assert unit.doubt == (f'shoulder reports {effort[0] + 0.0:.4g} at rest, where the model says '
-                          'that -40 holds it')
+    assert unit.doubt == (
+        f'shoulder reports {effort[0] + 0.0:.4g} at rest, where the model says that -40 holds it'
+    )
 
 
 def test_the_doubt_goes_when_torque_comes():
@@ -63,9 +70,11 @@ def test_to_forget_begins_anew_and_keeps_the_doubt():
     assert unit.doubt
 
 
-@pytest.mark.parametrize('torque, limits', [
-    ([2.6, 1.1, 0.29], LIMITS), ([0.09, 0.0, 0.0], [math.nan] * 3),
-], ids=['of their limits', 'without limits'])
+@pytest.mark.parametrize(
+    'torque, limits',
+    [([2.6, 1.1, 0.29], LIMITS), ([0.09, 0.0, 0.0], [math.nan] * 3)],
+    ids=['of their limits', 'without limits'],
+)
 def test_joints_that_carry_little_prove_nothing(torque, limits):
     unit = EffortAtRest(NAMES, limits)
     assert not rest(unit, np.zeros(3), np.array(torque))

@@ -30,8 +30,9 @@ class Bench:
 
     def __init__(self, settings=SETTINGS, obstacle=None, is_found=True):
         self.states = []
-        self.guard = EffortGuard(settings, lambda state, reason: self.states.append(state.name),
-                                 obstacle)
+        self.guard = EffortGuard(
+            settings, lambda state, reason: self.states.append(state.name), obstacle
+        )
         self.now, self.outputs, self._next_look = 100.0, [], 0.0
         self.look()
         if is_found:
@@ -103,10 +104,12 @@ def is_fading(outputs, start=FULL):
     factors = [output[0] / start[0] for output in outputs]
     return factors == sorted(factors, reverse=True) and all(
         output == pytest.approx([factor * effort for effort in start])
-        for factor, output in zip(factors, outputs, strict=True))
+        for factor, output in zip(factors, outputs, strict=True)
+    )
 
 
 # Passing -------------------------------------------------------------------------------------
+
 
 def test_commands_pass_as_they_are(bench):
     command = array('d', FULL)
@@ -147,6 +150,7 @@ def test_an_effort_above_its_limit_is_clamped():
 
 # Silence -------------------------------------------------------------------------------------
 
+
 def test_silence_fades_in_time_and_ends_in_fault(active):
     silent_since = active.now - PERIOD
     before = len(active.outputs)
@@ -161,10 +165,16 @@ def test_silence_fades_in_time_and_ends_in_fault(active):
     assert 'no command for 0.05' in active.guard.reason and '~/reset' in active.guard.reason
 
 
-@pytest.mark.parametrize(('bad', 'kind'), [
-    ((), 'empty'), ((1.0,), 'length'), ((1.0,) * 4, 'length'), ((math.nan, 0.0, 0.0),
-                                                                'not finite'),
-    ((0.0, math.inf, 0.0), 'not finite')])
+@pytest.mark.parametrize(
+    ('bad', 'kind'),
+    [
+        ((), 'empty'),
+        ((1.0,), 'length'),
+        ((1.0,) * 4, 'length'),
+        ((math.nan, 0.0, 0.0), 'not finite'),
+        ((0.0, math.inf, 0.0), 'not finite'),
+    ],
+)
 def test_what_is_no_command_counts_as_silence(active, bad, kind):
     before = len(active.outputs)
     for _ in range(100):
@@ -230,6 +240,7 @@ def test_a_command_that_waits_behind_a_late_look_is_in_time(active):
 
 
 # After a fade --------------------------------------------------------------------------------
+
 
 @pytest.fixture
 def faded(active):
@@ -316,6 +327,7 @@ def test_reset_without_a_fault_is_refused(active):
 
 # The beginning -------------------------------------------------------------------------------
 
+
 def test_a_guard_that_comes_later_than_the_commands_does_not_begin_with_them():
     bench = Bench(is_found=False)
     bench.stream(0.3)
@@ -351,6 +363,7 @@ def test_an_obstacle_keeps_an_effort_from_beginning_but_no_zero():
 
 
 # Its own end and its own standstill ----------------------------------------------------------
+
 
 @pytest.mark.parametrize('within', [2.5, 0.2])
 def test_at_its_own_end_it_fades_whatever_comes(active, within):
@@ -418,6 +431,7 @@ def test_a_standstill_in_a_fade_makes_no_step(active):
 def test_an_observer_that_fails_changes_nothing():
     def fail(state, reason):
         raise RuntimeError('observer')
+
     guard = EffortGuard(SETTINGS, fail)
     guard.source_appeared(0.0)
     assert guard.on_command(1.0, array('d', FULL)) is not None
@@ -428,8 +442,12 @@ def test_an_observer_that_fails_changes_nothing():
 
 EFFORT = st.one_of(st.floats(-50.0, 50.0), st.just(0.0))
 COMMAND = st.one_of(
-    st.tuples(EFFORT, EFFORT), st.just((30.0, -5.0)), st.just((0.0, 0.0)), st.just((0.3, 0.0)),
-    st.sampled_from([(), (1.0,), (1.0, 2.0, 3.0), (math.nan, 1.0), (1.0, math.inf)]))
+    st.tuples(EFFORT, EFFORT),
+    st.just((30.0, -5.0)),
+    st.just((0.0, 0.0)),
+    st.just((0.3, 0.0)),
+    st.sampled_from([(), (1.0,), (1.0, 2.0, 3.0), (math.nan, 1.0), (1.0, math.inf)]),
+)
 EVENT = st.one_of(
     st.tuples(st.just('send'), COMMAND),
     st.tuples(st.just('stream'), st.tuples(COMMAND, st.integers(1, 30))),
@@ -438,7 +456,8 @@ EVENT = st.one_of(
     st.tuples(st.just('freeze'), st.floats(0.0, 3.0)),
     st.tuples(st.just('late'), st.floats(0.0, 0.2)),
     st.tuples(st.just('reset'), st.none()),
-    st.tuples(st.just('source'), st.none()))
+    st.tuples(st.just('source'), st.none()),
+)
 LIMITS = st.one_of(st.just(()), st.just((40.0, 8.0)))
 RATES = st.one_of(st.just(()), st.just((60.0, 30.0)))
 
@@ -468,8 +487,9 @@ class Judge(Bench):
             return None
         assert len(efforts) == 2 and all(map(math.isfinite, efforts))
         limits = self.guard.settings.effort_limits or (math.inf, math.inf)
-        wanted = [min(max(effort, -limit), limit)
-                  for effort, limit in zip(efforts, limits, strict=True)]
+        wanted = [
+            min(max(effort, -limit), limit) for effort, limit in zip(efforts, limits, strict=True)
+        ]
         if list(output) != list(efforts):
             # On the way from what is in force to the command, or from the way's beginning.
             start = self.guard._start if self.guard.state.name == 'STARTING' else before
@@ -479,8 +499,9 @@ class Judge(Bench):
             # After a fade an effort begins near zero, or not at all.
             most = max(self.scale) or max(limits)
             assert max(map(abs, output)) <= NEAR * most + 1e-9
-        self.scale = [max(largest, abs(effort))
-                      for largest, effort in zip(self.scale, output, strict=True)]
+        self.scale = [
+            max(largest, abs(effort)) for largest, effort in zip(self.scale, output, strict=True)
+        ]
         return output
 
     def _record(self, output):
@@ -492,7 +513,8 @@ class Judge(Bench):
 
 @given(st.lists(EVENT, max_size=25), LIMITS, RATES)
 def test_whatever_comes_no_effort_starts_by_itself_and_every_silence_ends_at_zero(
-        events, limits, rates):
+    events, limits, rates
+):
     judge = Judge(replace(SETTINGS, effort_limits=limits, rate_limits=rates))
     for kind, value in events:
         if kind == 'send':
@@ -514,8 +536,9 @@ def test_whatever_comes_no_effort_starts_by_itself_and_every_silence_ends_at_zer
             judge.guard.reset(judge.now)
         else:
             judge.guard.source_appeared(judge.now)
-    longest = max([SETTINGS.stop_ramp] + [abs(effort) / rate for effort, rate in zip(
-        judge.force, rates)])
+    longest = max(
+        [SETTINGS.stop_ramp] + [abs(effort) / rate for effort, rate in zip(judge.force, rates)]
+    )
     judge.wait(SETTINGS.timeout + LOOK_EVERY + CONFIRM_AFTER + longest + 3 * FADE_PERIOD)
     assert judge.force == [0.0, 0.0] and not judge.guard.has_effort
     assert judge.state in ('READY', 'FAULT')

@@ -19,8 +19,11 @@ def command(unit, effort, ramp, dt):
     return unit.step([ramp * value for value in unit.target(np.array(effort))], dt)
 
 
-@given(st.lists(st.tuples(st.tuples(any_float, any_float), st.floats(0, 1), st.floats(-1, 1)),
-                max_size=30))
+@given(
+    st.lists(
+        st.tuples(st.tuples(any_float, any_float), st.floats(0, 1), st.floats(-1, 1)), max_size=30
+    )
+)
 def test_no_sequence_of_efforts_gets_past_the_limits(sequence):
     unit = limiter((1.5, 0.5))
     last = np.zeros(2)

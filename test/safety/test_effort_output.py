@@ -26,7 +26,9 @@ class Bench:
         self.output = EffortOutput(
             OutputSettings(stop_behavior=stop_behavior, **settings),
             lambda state, reason: self.states.append(
-                (state.name, self.sent[-1].tolist() if self.sent else None)))
+                (state.name, self.sent[-1].tolist() if self.sent else None)
+            ),
+        )
         self.output.set_limiter(EffortLimiter(limits, rates, np.ones(2)))
         self.now, self.sent, self.times = 0.0, [], []
 
@@ -157,8 +159,9 @@ def test_a_stop_ramps_to_zero_and_ends_with_zeros():
 
 
 @pytest.mark.parametrize('rates', [RATES, np.full(2, 1e-6)])
-@pytest.mark.parametrize('behavior, ramp', [('zero', 60.0), ('ramp_to_zero', 0.0),
-                                            ('ramp_to_zero', 0.3)])
+@pytest.mark.parametrize(
+    'behavior, ramp', [('zero', 60.0), ('ramp_to_zero', 0.0), ('ramp_to_zero', 0.3)]
+)
 def test_every_stop_ends_in_time_whatever_the_rate_limits_say(behavior, ramp, rates):
     bench = Bench(behavior, stop_ramp=ramp).active()
     bench.output.set_limiter(EffortLimiter(LIMITS, rates, np.ones(2)))
@@ -267,7 +270,7 @@ def test_a_change_goes_out_over_the_start_ramp_while_the_arm_is_followed():
     np.testing.assert_allclose(bench.sent[-1], 1.5 * TORQUE, rtol=0.05)
     bench.follow(2.0 * TORQUE, seconds=0.3)
     np.testing.assert_array_equal(bench.sent[-1], 2.0 * TORQUE)
-    steps = np.abs(np.diff(np.array(bench.sent[begin - 1:]), axis=0))
+    steps = np.abs(np.diff(np.array(bench.sent[begin - 1 :]), axis=0))
     assert (steps <= 1.05 * np.abs(TORQUE) * PERIOD / 0.5 + 1e-12).all()
     assert bench.name == 'ACTIVE'
 
@@ -292,7 +295,7 @@ def test_a_change_during_the_start_takes_its_own_time():
     bench.output.blend(bench.now, TORQUE - 2.0 * TORQUE)
     begin = len(bench.sent)
     bench.follow(2.0 * TORQUE, seconds=0.6)
-    steps = np.abs(np.diff(np.array(bench.sent[begin - 1:]), axis=0))
+    steps = np.abs(np.diff(np.array(bench.sent[begin - 1 :]), axis=0))
     assert (steps <= 2.2 * np.abs(TORQUE) * PERIOD / 0.5).all()
     assert bench.states[-1][0] == 'ACTIVE'
     np.testing.assert_allclose(bench.sent[-1], 2.0 * TORQUE)
@@ -315,7 +318,8 @@ def test_an_effort_above_its_limit_for_too_long_is_a_fault_and_a_moment_is_not()
     bench.follow(3.0 * TORQUE, seconds=0.3)
     assert bench.name == 'STOPPING'
     assert bench.output.machine.fault == (
-        'effort above its limit for 2 s: joint 0: 12 limited to 10; joint 1: -6 limited to 5')
+        'effort above its limit for 2 s: joint 0: 12 limited to 10; joint 1: -6 limited to 5'
+    )
 
 
 def test_a_controller_that_is_gone_ends_it_at_once_and_keeps_what_the_hardware_may_hold():

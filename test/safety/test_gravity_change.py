@@ -13,8 +13,9 @@ DOWN = (0.0, 0.0, -9.81)
 
 def turned(degrees, size=9.81):
     """Return gravity turned about y."""
-    return size * np.array([math.sin(math.radians(degrees)), 0.0,
-                            -math.cos(math.radians(degrees))])
+    return size * np.array(
+        [math.sin(math.radians(degrees)), 0.0, -math.cos(math.radians(degrees))]
+    )
 
 
 @pytest.fixture

@@ -3,12 +3,7 @@
 import contextlib
 import math
 
-from dynamics_node.safety import (
-    JointStateBuffer,
-    MotionLimits,
-    RejectedStateError,
-    StampTolerance,
-)
+from dynamics_node.safety import JointStateBuffer, MotionLimits, RejectedStateError, StampTolerance
 from dynamics_node.safety.joint_state_buffer import MAX_JUMPS, MAX_NAMES
 from hypothesis import given
 from hypothesis import strategies as st
@@ -66,15 +61,18 @@ def test_an_infinite_velocity_is_not_known():
     np.testing.assert_array_equal(unit.velocity, [math.nan, math.nan, 4.0])
 
 
-@pytest.mark.parametrize('names, position, velocity, kind, message', [
-    (['a', 'b'], [1.0], [], 'length', 'expected 2 positions for 2 names, got 1'),
-    (['a'], [], [], 'length', 'expected 1 positions for 1 names, got 0'),
-    (['a'], [1.0], [1.0, 2.0], 'length', 'expected 1 velocities or none, got 2'),
-    (['a', 'a'], [1.0, 2.0], [], 'name twice', "got twice: 'a'"),
-    (['b', 'a'], [1.0, math.nan], [], 'not finite', 'NaN or infinity for a'),
-    (['b', 'a'], [-math.inf, 1.0], [], 'not finite', 'for b'),
-    ([str(i) for i in range(MAX_NAMES + 1)], [], [], 'too many names', 'at most 4096'),
-])
+@pytest.mark.parametrize(
+    'names, position, velocity, kind, message',
+    [
+        (['a', 'b'], [1.0], [], 'length', 'expected 2 positions for 2 names, got 1'),
+        (['a'], [], [], 'length', 'expected 1 positions for 1 names, got 0'),
+        (['a'], [1.0], [1.0, 2.0], 'length', 'expected 1 velocities or none, got 2'),
+        (['a', 'a'], [1.0, 2.0], [], 'name twice', "got twice: 'a'"),
+        (['b', 'a'], [1.0, math.nan], [], 'not finite', 'NaN or infinity for a'),
+        (['b', 'a'], [-math.inf, 1.0], [], 'not finite', 'for b'),
+        ([str(i) for i in range(MAX_NAMES + 1)], [], [], 'too many names', 'at most 4096'),
+    ],
+)
 def test_a_bad_message_is_dropped_whole_and_counted(names, position, velocity, kind, message):
     unit = buffer()
     unit.update(0.0, NAMES, [1, 2, 3], [4, 5, 6])
@@ -122,15 +120,25 @@ def test_nan_of_a_joint_that_is_not_needed_is_passed_over():
 
 def moving(needed=NAMES):
     """Return a buffer of joints that make 1 rad/s, where a state may be 0.1 s old."""
-    return JointStateBuffer(NAMES, needed, np.zeros(3), MotionLimits(
-        NAMES, np.ones(3), np.tile([-3.0, 3.0], (3, 1)), np.zeros(3, dtype=bool)),
-        StampTolerance(0.1))
+    return JointStateBuffer(
+        NAMES,
+        needed,
+        np.zeros(3),
+        MotionLimits(NAMES, np.ones(3), np.tile([-3.0, 3.0], (3, 1)), np.zeros(3, dtype=bool)),
+        StampTolerance(0.1),
+    )
 
 
 def stamped(unit, time, names=NAMES, position=(0.0, 0.0, 0.0), late=0.0):
     """Give a buffer a message that arrives `late` seconds after its stamp."""
-    unit.update(time, list(names), list(position), (), round((100 + time - late) * SECOND),
-                round((100 + time) * SECOND))
+    unit.update(
+        time,
+        list(names),
+        list(position),
+        (),
+        round((100 + time - late) * SECOND),
+        round((100 + time) * SECOND),
+    )
 
 
 @pytest.mark.parametrize('late, kind', [(0.2, 'stamp'), (-0.2, 'stamp'), (0.09, None)])
@@ -185,8 +193,11 @@ def test_without_stamps_the_arrival_counts():
 def test_an_impossible_step_is_dropped_and_the_next_good_one_counts():
     unit = moving()
     stamped(unit, 0.0)
-    with pytest.raises(RejectedStateError, match=r'got b from 0 to 0\.5 within 0\.100 s, at '
-                                                 'a velocity limit of 1') as caught:
+    with pytest.raises(
+        RejectedStateError,
+        match=r'got b from 0 to 0\.5 within 0\.100 s, at '
+        'a velocity limit of 1',
+    ) as caught:
         stamped(unit, 0.1, position=(0.0, 0.5, 0.0))
     assert not caught.value.is_fault
     stamped(unit, 0.2, position=(0.0, 0.1, 0.0))
@@ -280,6 +291,7 @@ def test_what_is_said_of_the_motion_is_of_the_needed_joints():
 
 # Efforts -------------------------------------------------------------------------------------
 
+
 def test_efforts_come_by_name_like_everything_else():
     unit = buffer()
     assert np.isnan(unit.effort).all()
@@ -289,8 +301,9 @@ def test_efforts_come_by_name_like_everything_else():
     np.testing.assert_array_equal(unit.effort, [-1.0, math.nan, -3.0])
 
 
-@pytest.mark.parametrize('efforts', [
-    [], [1.0], [1.0] * 4, [math.nan] * 3, [math.inf, -math.inf, math.nan]], ids=str)
+@pytest.mark.parametrize(
+    'efforts', [[], [1.0], [1.0] * 4, [math.nan] * 3, [math.inf, -math.inf, math.nan]], ids=str
+)
 def test_wrong_efforts_are_unknown_and_spoil_no_state(efforts):
     unit = buffer()
     unit.update(0.0, NAMES, [0, 0, 0], [0, 0, 0], efforts=[1.0, 2.0, 3.0])
@@ -301,8 +314,11 @@ def test_wrong_efforts_are_unknown_and_spoil_no_state(efforts):
     np.testing.assert_array_equal(unit.velocity, [4, 5, 6])
 
 
-@given(st.lists(st.floats(), max_size=5), st.permutations(['a', 'b', 'c', 'x']),
-       st.lists(st.floats(), min_size=4, max_size=4))
+@given(
+    st.lists(st.floats(), max_size=5),
+    st.permutations(['a', 'b', 'c', 'x']),
+    st.lists(st.floats(), min_size=4, max_size=4),
+)
 def test_whatever_the_efforts_are_the_state_is_the_same(efforts, names, positions):
     units = [buffer(needed=('a', 'b')), buffer(needed=('a', 'b'))]
     for unit, given_efforts in zip(units, ((), efforts), strict=True):

@@ -10,19 +10,29 @@ import numpy as np
 import pytest
 
 # A hinge of 3 rad/s, a wheel of 3 rad/s, a joint of which nothing is known.
-LIMITS = MotionLimits(('hinge', 'wheel', 'unknown'), np.array([3.0, 3.0, math.nan]),
-                      np.array([[-1.0, 2.0], [-math.inf, math.inf], [-math.inf, math.inf]]),
-                      np.array([False, True, False]))
+LIMITS = MotionLimits(
+    ('hinge', 'wheel', 'unknown'),
+    np.array([3.0, 3.0, math.nan]),
+    np.array([[-1.0, 2.0], [-math.inf, math.inf], [-math.inf, math.inf]]),
+    np.array([False, True, False]),
+)
 EVERY = (0, 1, 2)
 
 
-@pytest.mark.parametrize('step, dt, is_impossible', [
-    (0.59, 0.1, False), (0.61, 0.1, True), (-0.61, 0.1, True),
-    # Two messages on each other's heels: still the shortest step.
-    (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 0.99, 0.0, False),
-    (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 1.01, 0.0, True),
-    (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 1.01, -5.0, True),
-    (1e300, 1.0, True), (1e300, math.inf, False)])
+@pytest.mark.parametrize(
+    'step, dt, is_impossible',
+    [
+        (0.59, 0.1, False),
+        (0.61, 0.1, True),
+        (-0.61, 0.1, True),
+        # Two messages on each other's heels: still the shortest step.
+        (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 0.99, 0.0, False),
+        (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 1.01, 0.0, True),
+        (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 1.01, -5.0, True),
+        (1e300, 1.0, True),
+        (1e300, math.inf, False),
+    ],
+)
 def test_a_step_beyond_twice_the_velocity_limit_is_impossible(step, dt, is_impossible):
     for joint in (0, 1):
         # 1e300 rad is some whole number of turns away from anything: only the hinge tells.
@@ -37,8 +47,12 @@ def test_whole_turns_of_a_wheel_are_no_step(turns, step):
     assert LIMITS.is_impossible(0, 0.5, 0.5 + turns * 2 * math.pi + step, 0.1) == (turns != 0)
 
 
-@given(st.integers(0, 1), st.floats(allow_nan=False, allow_infinity=False),
-       st.floats(allow_nan=False, allow_infinity=False), st.floats(-1, 1))
+@given(
+    st.integers(0, 1),
+    st.floats(allow_nan=False, allow_infinity=False),
+    st.floats(allow_nan=False, allow_infinity=False),
+    st.floats(-1, 1),
+)
 def test_no_two_numbers_make_it_raise(joint, before, after, dt):
     LIMITS.is_impossible(joint, before, after, dt)
     LIMITS.describe_jump(joint, before, after, dt)
@@ -61,8 +75,14 @@ def test_a_runaway_is_a_joint_above_its_velocity_limit():
 
 def test_the_allowed_velocity_decides_on_runaway_and_the_possible_one_on_jumps():
     def limits(allowed):
-        return MotionLimits(('hinge',), np.array([3.0]), np.array([[-1.0, 2.0]]),
-                            np.array([False]), np.array([allowed]))
+        return MotionLimits(
+            ('hinge',),
+            np.array([3.0]),
+            np.array([[-1.0, 2.0]]),
+            np.array([False]),
+            np.array([allowed]),
+        )
+
     slow, fast, free = limits(0.5), limits(10.0), limits(math.nan)
     assert slow.runaway((0,), (0.6,)) == 'hinge at 0.6 (limit 0.5)'
     assert fast.runaway((0,), (9.9,)) == free.runaway((0,), (1e9,)) == ''

@@ -7,14 +7,20 @@ from dynamics_node.safety.self_compensation import SELF_COMPENSATING
 from dynamics_node.urdf import read_urdf
 import pytest
 
-URDF = ('<robot name="arm"><link name="base"/><ros2_control name="a" type="system"><hardware>'
-        '<plugin> {} </plugin></hardware></ros2_control></robot>')
+URDF = (
+    '<robot name="arm"><link name="base"/><ros2_control name="a" type="system"><hardware>'
+    '<plugin> {} </plugin></hardware></ros2_control></robot>'
+)
 
 
-@pytest.mark.parametrize('plugin, arm', [
-    ('ur_robot_driver/URPositionHardwareInterface', 'a Universal Robots arm'),
-    ('franka_hardware/FrankaHardwareInterface', 'a Franka arm'),
-    ('lbr_ros2_control::SystemInterface', 'a KUKA LBR iiwa')])
+@pytest.mark.parametrize(
+    'plugin, arm',
+    [
+        ('ur_robot_driver/URPositionHardwareInterface', 'a Universal Robots arm'),
+        ('franka_hardware/FrankaHardwareInterface', 'a Franka arm'),
+        ('lbr_ros2_control::SystemInterface', 'a KUKA LBR iiwa'),
+    ],
+)
 def test_it_is_found_in_the_description(plugin, arm):
     plugins = read_urdf(URDF.format(plugin)).hardware_plugins
     assert plugins == (plugin,)

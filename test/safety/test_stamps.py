@@ -12,11 +12,15 @@ def test_a_stamp_as_far_as_a_state_may_be_old_passes(late):
     StampTolerance(0.3).check(NOW - round(late * SECOND), NOW)
 
 
-@pytest.mark.parametrize('late, text', [
-    (0.301, r'within 0\.3 s of the clock, got one 0\.301 s old'),
-    (3600, r'3600\.000 s old: synchronise the clocks'),
-    (-0.4, r'0\.400 s in the future'),
-    (NOW / SECOND, 'set use_sim_time on both sides or on neither')])
+@pytest.mark.parametrize(
+    'late, text',
+    [
+        (0.301, r'within 0\.3 s of the clock, got one 0\.301 s old'),
+        (3600, r'3600\.000 s old: synchronise the clocks'),
+        (-0.4, r'0\.400 s in the future'),
+        (NOW / SECOND, 'set use_sim_time on both sides or on neither'),
+    ],
+)
 def test_a_stamp_further_away_is_refused_in_words(late, text):
     with pytest.raises(RejectedStateError, match=text) as caught:
         StampTolerance(0.3).check(NOW - round(late * SECOND), NOW)

@@ -38,6 +38,7 @@ def test_the_first_fault_is_the_one_that_stays():
 def test_an_observer_that_fails_changes_nothing(caplog):
     def fail(state, reason):
         raise RuntimeError('publisher is gone')
+
     unit = OutputStateMachine(fail)
     unit.enter(OutputState.STARTING, 'enabled')
     assert unit.state == OutputState.STARTING
@@ -55,5 +56,6 @@ def test_what_is_on_is_what_sends(states):
 
 def test_numbers_are_those_of_the_message():
     assert {state.name: int(state) for state in OutputState} == {
-        name: getattr(Message, name) for name in (
-            'READY', 'STARTING', 'ACTIVE', 'STOPPING', 'FAULT', 'HOLDING')}
+        name: getattr(Message, name)
+        for name in ('READY', 'STARTING', 'ACTIVE', 'STOPPING', 'FAULT', 'HOLDING')
+    }

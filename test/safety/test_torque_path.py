@@ -41,15 +41,18 @@ class Arm:
     """A torque path with an arm of two joints, and a caller that publishes what it returns."""
 
     def __init__(self, behavior='ramp_to_zero', timeout=0.1, velocity=3.0, rates=RATES):
-        self.path = TorquePath(self.settings(behavior, timeout),
-                               lambda state, reason: self.states.append(state.name))
+        self.path = TorquePath(
+            self.settings(behavior, timeout), lambda state, reason: self.states.append(state.name)
+        )
         self.states, self.sent = [], []
         self.rates = rates
         self.behavior, self.timeout = behavior, timeout
-        self.limits = MotionLimits(NAMES, np.full(2, velocity), np.tile([-3.0, 3.0], (2, 1)),
-                                   np.zeros(2, dtype=bool))
-        self.path.use(JointStateBuffer(NAMES, NAMES, np.zeros(2), self.limits,
-                                       StampTolerance(timeout)))
+        self.limits = MotionLimits(
+            NAMES, np.full(2, velocity), np.tile([-3.0, 3.0], (2, 1)), np.zeros(2, dtype=bool)
+        )
+        self.path.use(
+            JointStateBuffer(NAMES, NAMES, np.zeros(2), self.limits, StampTolerance(timeout))
+        )
         self.configure()
 
     @staticmethod
@@ -57,8 +60,13 @@ class Arm:
         return OutputSettings(timeout, 0.5, 1.0, behavior)
 
     def configure(self, gain=1.0, limits=LIMITS, now=0.0):
-        self.path.configure(now, self.settings(self.behavior, self.timeout), Model(gain),
-                            EffortLimiter(limits, self.rates, np.ones(2), NAMES), self.limits)
+        self.path.configure(
+            now,
+            self.settings(self.behavior, self.timeout),
+            Model(gain),
+            EffortLimiter(limits, self.rates, np.ones(2), NAMES),
+            self.limits,
+        )
 
     def publish(self, now, command):
         if command is not None:
@@ -70,8 +78,12 @@ class Arm:
         """Take a message, stamped when it arrives unless told otherwise; return the command."""
         clock = round((100 + now) * SECOND) if clock is None else clock
         stamp = clock if stamp is None else stamp
-        return self.publish(now, self.path.process_joint_state(
-            now, list(names), list(position), list(velocity), stamp, clock, list(efforts)))
+        return self.publish(
+            now,
+            self.path.process_joint_state(
+                now, list(names), list(position), list(velocity), stamp, clock, list(efforts)
+            ),
+        )
 
     def tick(self, now):
         self.path.monitored(now)
@@ -137,7 +149,8 @@ def test_one_jump_is_passed_over_and_three_in_a_row_stop_the_arm():
     assert arm.name == 'STOPPING'
     assert arm.fault == (
         'expected a position that the joint can have reached, got elbow from 1.4 to 0 within '
-        '0.030 s, at a velocity limit of 3, 3 times in a row')
+        '0.030 s, at a velocity limit of 3, 3 times in a row'
+    )
 
 
 def test_an_arm_above_its_velocity_limits_stops_at_once():
@@ -163,6 +176,7 @@ def test_hold_is_for_silence_alone():
         arm, state = active(behavior='hold')
         cause(arm, state)
         return arm.name
+
     assert stopped(lambda arm, _: arm.tick(1.2)) == 'HOLDING'
     assert stopped(lambda arm, state: arm.take(1.01, state, [0.0, 4.0])) == 'STOPPING'
     assert stopped(lambda arm, _: arm.path.disable(1.01, 'request')) == 'STOPPING'
@@ -219,9 +233,9 @@ def test_a_process_that_stood_still_is_a_fault_although_the_newest_state_is_fres
 def test_a_command_that_was_held_up_is_not_sent():
     arm, _state = active()
     sent = arm.path.output.limiter.last
-    command = arm.path.process_joint_state(1.01, NAMES, [1.39, 0.2],
-                                           stamp=round(101.01 * SECOND),
-                                           clock=round(101.01 * SECOND))
+    command = arm.path.process_joint_state(
+        1.01, NAMES, [1.39, 0.2], stamp=round(101.01 * SECOND), clock=round(101.01 * SECOND)
+    )
     assert command is not None
     assert arm.path.is_timely(1.02)
     assert not arm.path.is_timely(2.0)
@@ -299,8 +313,10 @@ def test_a_controller_that_was_deactivated_ends_it_and_the_next_start_begins_the
     last = arm.sent[-1]
     arm.path.lose_controller(1.01, '/effort_controller is inactive')
     assert arm.name == 'FAULT'
-    assert arm.fault == ('/effort_controller is inactive; the last efforts sent, which the '
-                         'hardware may hold: elbow: 5.09901, wrist: 1.6')
+    assert arm.fault == (
+        '/effort_controller is inactive; the last efforts sent, which the '
+        'hardware may hold: elbow: 5.09901, wrist: 1.6'
+    )
     assert arm.run(1.01, 0.5, state, efforts=last) and arm.sent[-1] is last
     assert arm.path.enable(1.6)
     np.testing.assert_allclose(arm.take(1.61, state, efforts=last), last)
@@ -317,8 +333,10 @@ def test_a_controller_that_vanishes_during_the_stop_of_a_fault_is_named_behind_i
     arm.path.fault(1.01, '2 publishers')
     arm.path.lose_controller(1.02, '/effort_controller no longer listens')
     assert arm.name == 'FAULT'
-    assert arm.fault.startswith('2 publishers; /effort_controller no longer listens; the last '
-                                'efforts sent, which the hardware may hold: elbow: ')
+    assert arm.fault.startswith(
+        '2 publishers; /effort_controller no longer listens; the last '
+        'efforts sent, which the hardware may hold: elbow: '
+    )
 
 
 def test_a_controller_that_begins_to_listen_gets_the_ramp():
@@ -337,8 +355,7 @@ def test_a_clock_that_goes_back_drops_the_state_and_ramps_again():
     assert 'the clock went back by 98.000 s' in arm.path.output.machine.reason
     np.testing.assert_array_equal(command, last)
     for i in range(1, 70):
-        command = arm.take(1.01 + 0.01 * i, [-elbow, -wrist],
-                           clock=3 * SECOND + i * SECOND // 100)
+        command = arm.take(1.01 + 0.01 * i, [-elbow, -wrist], clock=3 * SECOND + i * SECOND // 100)
         arm.tick(1.01 + 0.01 * i)
     assert arm.name == 'ACTIVE'
     np.testing.assert_allclose(command, [30.0 * math.cos(elbow), -8.0 * wrist])
@@ -392,17 +409,22 @@ def test_the_next_tick_is_when_the_newest_state_becomes_stale():
 
 number = st.one_of(st.floats(-3, 3), st.floats(allow_nan=True, allow_infinity=True))
 MESSAGES = st.tuples(
-    st.just('state'), st.lists(st.sampled_from([*NAMES, 'other']), max_size=4),
-    st.lists(number, max_size=4), st.lists(number, max_size=4),
+    st.just('state'),
+    st.lists(st.sampled_from([*NAMES, 'other']), max_size=4),
+    st.lists(number, max_size=4),
+    st.lists(number, max_size=4),
     # The stamp: none, in time, late, ahead, from anywhere.
-    st.one_of(st.none(), st.floats(-0.3, 0.3), st.integers(-2**31, 2**31)))
+    st.one_of(st.none(), st.floats(-0.3, 0.3), st.integers(-(2**31), 2**31)),
+)
 CALLS = ('enable', 'disable', 'fault', 'error', 'signal', 'lost', 'late controller', 'tick')
 EVENTS = st.one_of(
-    MESSAGES, st.tuples(st.just('good'), st.floats(-1.5, 1.5), st.floats(-1.5, 1.5)),
+    MESSAGES,
+    st.tuples(st.just('good'), st.floats(-1.5, 1.5), st.floats(-1.5, 1.5)),
     st.tuples(st.just('good'), st.floats(-0.01, 0.01), st.floats(-0.01, 0.01)),
     st.tuples(st.sampled_from(CALLS)),
     st.tuples(st.just('change'), st.floats(-2.0, 2.0), st.floats(0.1, 1.0)),
-    st.tuples(st.just('clock'), st.one_of(st.just(0.0), st.floats(-1e6, 1e6))))
+    st.tuples(st.just('clock'), st.one_of(st.just(0.0), st.floats(-1e6, 1e6))),
+)
 
 
 def stamp_of(choice, clock):
@@ -417,19 +439,29 @@ def call(path, event, now):
     if event == 'signal':
         path.close(now, event, 2.5)
     else:
-        {'disable': path.disable, 'fault': path.fault, 'error': path.fail,
-         'lost': path.lose_controller, 'late controller': path.restart_from_zero
-         }[event](now, event)
+        {
+            'disable': path.disable,
+            'fault': path.fault,
+            'error': path.fail,
+            'lost': path.lose_controller,
+            'late controller': path.restart_from_zero,
+        }[event](now, event)
 
 
 # An arm that moves as fast as it can while ACTIVE needs a larger step than its rate limit.
-SWING = [(0.0, ('good', 1.4, 0.2)), (0.0, ('enable',)), *[(0.01, ('good', 1.4, 0.2))] * 60,
-         (0.01, ('good', 1.345, 0.2))]
+SWING = [
+    (0.0, ('good', 1.4, 0.2)),
+    (0.0, ('enable',)),
+    *[(0.01, ('good', 1.4, 0.2))] * 60,
+    (0.01, ('good', 1.345, 0.2)),
+]
 
 
 @example(behavior='hold', events=SWING)
-@given(st.sampled_from(BEHAVIORS),
-       st.lists(st.tuples(st.one_of(st.just(0.01), st.floats(0, 0.5)), EVENTS), max_size=80))
+@given(
+    st.sampled_from(BEHAVIORS),
+    st.lists(st.tuples(st.one_of(st.just(0.01), st.floats(0, 0.5)), EVENTS), max_size=80),
+)
 def test_whatever_comes_no_command_is_wrong_and_none_comes_while_off(behavior, events):
     arm = Arm(behavior)
     path = arm.path
@@ -450,7 +482,8 @@ def test_whatever_comes_no_command_is_wrong_and_none_comes_while_off(behavior, e
             command = arm.tick(now)
         elif event in ('state', 'good'):
             names, position, velocity, stamp = (
-                values if event == 'state' else (NAMES, values, [], 0.0))
+                values if event == 'state' else (NAMES, values, [], 0.0)
+            )
             try:
                 command = arm.take(now, position, velocity, stamp_of(stamp, clock), names, clock)
             except RejectedStateError as error:
@@ -476,15 +509,22 @@ def test_whatever_comes_no_command_is_wrong_and_none_comes_while_off(behavior, e
     assert np.isfinite(path.buffer.position).all()
 
 
-@given(st.sampled_from(BEHAVIORS), st.floats(0.01, 60.0), st.floats(1e-9, 1e3),
-       st.sampled_from(['fault', 'signal', 'error']))
+@given(
+    st.sampled_from(BEHAVIORS),
+    st.floats(0.01, 60.0),
+    st.floats(1e-9, 1e3),
+    st.sampled_from(['fault', 'signal', 'error']),
+)
 def test_every_stop_that_protects_the_arm_ends_within_its_bound(behavior, ramp, rate, cause):
     arm, state = active()
     arm.rates, arm.behavior = np.full(2, rate), behavior
     arm.settings = lambda behavior, timeout: OutputSettings(timeout, 0.5, ramp, behavior)
     arm.configure()
-    {'fault': lambda: arm.path.fault(1.0, cause), 'error': lambda: arm.path.fail(1.0, cause),
-     'signal': lambda: arm.path.close(1.0, cause, 2.5)}[cause]()
+    {
+        'fault': lambda: arm.path.fault(1.0, cause),
+        'error': lambda: arm.path.fail(1.0, cause),
+        'signal': lambda: arm.path.close(1.0, cause, 2.5),
+    }[cause]()
     arm.run(1.0, 2.6, state)
     assert not arm.path.is_on
     np.testing.assert_array_equal(arm.sent[-1], [0.0, 0.0])

@@ -16,10 +16,11 @@ from .soak import Soak
 def main(arguments=None):
     """Run the soak; return 0 if nothing was lost, leaked or out of limits."""
     options = _options(arguments)
-    console = Console(highlight=False, markup=False,
-                      width=None if sys.stdout.isatty() else 100)
-    console.print(f'A simulated arm at {options.rate:g} Hz for {options.minutes:g} minutes, '
-                  f'seed {options.seed}')
+    console = Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 100)
+    console.print(
+        f'A simulated arm at {options.rate:g} Hz for {options.minutes:g} minutes, '
+        f'seed {options.seed}'
+    )
     rig = Rig(options.rate, options.seed, state_timeout=STATE_TIMEOUT)
     try:
         soak = Soak(rig, random.Random(options.seed), console.print)
@@ -45,10 +46,19 @@ def main(arguments=None):
 def _options(arguments):
     parser = argparse.ArgumentParser(prog='python -m soak', description=__doc__)
     parser.add_argument('--minutes', type=float, default=10.0, help='default: 10')
-    parser.add_argument('--rate', type=float, default=500.0, metavar='HZ',
-                        help='of the joint states (default: 500)')
-    parser.add_argument('--seed', type=int, default=int(time.time()) % 100_000,
-                        help='decides which faults come when (default: a new one)')
+    parser.add_argument(
+        '--rate',
+        type=float,
+        default=500.0,
+        metavar='HZ',
+        help='of the joint states (default: 500)',
+    )
+    parser.add_argument(
+        '--seed',
+        type=int,
+        default=int(time.time()) % 100_000,
+        help='decides which faults come when (default: a new one)',
+    )
     return parser.parse_args(arguments)
 
 

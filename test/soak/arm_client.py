@@ -75,14 +75,19 @@ class ArmClient(Client):
         self._names, self._rows = names, None
         many = QoSProfile(depth=1000)
         # As bytes: only few of them are ever looked into.
-        self.node.create_subscription(JointState, 'robot/joint_states', self._on_truth, many,
-                                      raw=True)
-        self.node.create_subscription(Float64MultiArray, 'forward_effort_controller/commands',
-                                      self._on_command, many)
-        self.node.create_subscription(OutputState, 'dynamics_node/state', self._on_output,
-                                      QoSProfile(depth=100, durability=LATCHED.durability))
-        self.node.create_subscription(DiagnosticArray, '/diagnostics', self._on_diagnostics,
-                                      many)
+        self.node.create_subscription(
+            JointState, 'robot/joint_states', self._on_truth, many, raw=True
+        )
+        self.node.create_subscription(
+            Float64MultiArray, 'forward_effort_controller/commands', self._on_command, many
+        )
+        self.node.create_subscription(
+            OutputState,
+            'dynamics_node/state',
+            self._on_output,
+            QoSProfile(depth=100, durability=LATCHED.durability),
+        )
+        self.node.create_subscription(DiagnosticArray, '/diagnostics', self._on_diagnostics, many)
 
     def call(self, kind, name, request=None, action=None, timeout=PATIENCE):
         """Call a service; again if there is no answer: whoever has just died takes requests."""
@@ -116,8 +121,9 @@ class ArmClient(Client):
     @property
     def is_held(self):
         """Whether the effort of the arm is that of the newest command."""
-        return bool(self.commands) and np.allclose(self.state[2], self.commands[-1][1],
-                                                   rtol=1e-3, atol=1e-3)
+        return bool(self.commands) and np.allclose(
+            self.state[2], self.commands[-1][1], rtol=1e-3, atol=1e-3
+        )
 
     @property
     def speed(self):
@@ -150,35 +156,50 @@ class ArmClient(Client):
         self.until(lambda: self.truth[-1][0] >= end)
         times = [time for time, _ in self.truth]
         first = max(bisect.bisect(times, begin) - 1, 0)
-        chosen = [(time, *self._read(data)) for time, data in itertools.islice(
-            self.truth, first, bisect.bisect(times, end))]
+        chosen = [
+            (time, *self._read(data))
+            for time, data in itertools.islice(self.truth, first, bisect.bisect(times, end))
+        ]
         return tuple(np.array(column) for column in zip(*chosen))
 
     def set_fault(self, fault):
         """Change what is wrong with the line."""
-        self.set_parameter('relay', 'fault', ParameterValue(
-            type=ParameterType.PARAMETER_STRING, string_value=fault))
+        self.set_parameter(
+            'relay',
+            'fault',
+            ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=fault),
+        )
 
     def set_clock_offset(self, seconds):
         """Let the relay publish /clock and move all stamps; NaN: no longer."""
-        self.set_parameter('relay', 'clock_offset', ParameterValue(
-            type=ParameterType.PARAMETER_DOUBLE, double_value=seconds))
+        self.set_parameter(
+            'relay',
+            'clock_offset',
+            ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=seconds),
+        )
 
     def set_state_timeout(self, seconds):
         """Change how old a joint state may be for the node."""
-        self.set_parameter('dynamics_node', 'state_timeout', ParameterValue(
-            type=ParameterType.PARAMETER_DOUBLE, double_value=seconds))
+        self.set_parameter(
+            'dynamics_node',
+            'state_timeout',
+            ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=seconds),
+        )
 
     def set_parameter(self, node, name, value):
         """Set a parameter of any node."""
-        [result] = self.call(SetParameters, f'/{node}/set_parameters', SetParameters.Request(
-            parameters=[Parameter(name=name, value=value)])).results
+        [result] = self.call(
+            SetParameters,
+            f'/{node}/set_parameters',
+            SetParameters.Request(parameters=[Parameter(name=name, value=value)]),
+        ).results
         assert result.successful, result.reason
 
     def set_brakes(self, engaged):
         """Engage or release the brakes of the robot; tell whether it did."""
-        return self.call(SetBool, '/simulated_robot/set_brakes',
-                         SetBool.Request(data=engaged)).success
+        return self.call(
+            SetBool, '/simulated_robot/set_brakes', SetBool.Request(data=engaged)
+        ).success
 
     def reset(self):
         """Send the robot to its start pose; tell whether it set out."""
@@ -205,8 +226,10 @@ class ArmClient(Client):
         message = deserialize_message(data, JointState)
         if self._rows is None:
             self._rows = [message.name.index(name) for name in self._names]
-        return tuple(np.array(field)[self._rows] for field in (
-            message.position, message.velocity, message.effort))
+        return tuple(
+            np.array(field)[self._rows]
+            for field in (message.position, message.velocity, message.effort)
+        )
 
     def _on_command(self, message, info):
         written, values = self.time_of(info['source_timestamp']), message.data.tolist()
@@ -223,7 +246,9 @@ class ArmClient(Client):
 
     def _on_diagnostics(self, message):
         self.diagnostics_received += 1
-        self.diagnostics = {status.name.split(': ', 1)[1]:
-                            {item.key: item.value for item in status.values}
-                            for status in message.status if status.name.startswith('dynamics_')}
+        self.diagnostics = {
+            status.name.split(': ', 1)[1]: {item.key: item.value for item in status.values}
+            for status in message.status
+            if status.name.startswith('dynamics_')
+        }
         self.on_diagnostics(self.diagnostics)

@@ -150,13 +150,18 @@ class CommandJudge:
                 self._accuse(time, f'joint {joint}: expected at most {limit:.6g}, got {value:.6g}')
 
     def _judge_step(self, time, values):
-        needed, joint = max((abs(value - last) / rate, joint) for joint, (value, last, rate)
-                            in enumerate(zip(values, self.last, self._rate_limits)))
+        needed, joint = max(
+            (abs(value - last) / rate, joint)
+            for joint, (value, last, rate) in enumerate(zip(values, self.last, self._rate_limits))
+        )
         earliest = max(self._now + needed, self._written)
         if earliest > time + 1e-6:  # stamps of DDS are exact to less than that
-            self._accuse(time, f'joint {joint}: the step from {self.last[joint]:.6g} to '
-                               f'{values[joint]:.6g} takes {needed:.6f} s at the rate limit, and '
-                               f'is {earliest - time:.6f} s too early')
+            self._accuse(
+                time,
+                f'joint {joint}: the step from {self.last[joint]:.6g} to '
+                f'{values[joint]:.6g} takes {needed:.6f} s at the rate limit, and '
+                f'is {earliest - time:.6f} s too early',
+            )
             earliest = time
         self._now, self._written = earliest, time
 

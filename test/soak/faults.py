@@ -53,6 +53,7 @@ def _on_the_line(kind, **options):
         rig.client.set_fault(kind)
         yield
         rig.client.set_fault('none')
+
     return Fault(kind, inflict, **options)
 
 
@@ -104,24 +105,66 @@ STALE = 'joint_states stale'
 UNTIL_STALE = 3 * (STATE_TIMEOUT + 0.2)
 
 FAULTS = [
-    *[_on_the_line(kind, stops=False) for kind in (
-        'permuted', 'parts', 'duplicated', 'no_stamp', 'frozen/5', 'nan/5', 'length/5',
-        'name_twice/5', 'unknown_names/5', 'jump/30', 'old_stamp/5', 'future_stamp/5',
-        'bag_loop/5', 'garbage/5', 'flood', 'many_names/30', 'million_names/200')],
-    *[_on_the_line(kind, stops=True, reason=STALE, longest=UNTIL_STALE) for kind in (
-        'silent', 'frozen', 'half', 'all_nan', 'length', 'name_twice', 'unknown_names',
-        'old_stamp', 'future_stamp', 'bag_loop')],
+    *[
+        _on_the_line(kind, stops=False)
+        for kind in (
+            'permuted',
+            'parts',
+            'duplicated',
+            'no_stamp',
+            'frozen/5',
+            'nan/5',
+            'length/5',
+            'name_twice/5',
+            'unknown_names/5',
+            'jump/30',
+            'old_stamp/5',
+            'future_stamp/5',
+            'bag_loop/5',
+            'garbage/5',
+            'flood',
+            'many_names/30',
+            'million_names/200',
+        )
+    ],
+    *[
+        _on_the_line(kind, stops=True, reason=STALE, longest=UNTIL_STALE)
+        for kind in (
+            'silent',
+            'frozen',
+            'half',
+            'all_nan',
+            'length',
+            'name_twice',
+            'unknown_names',
+            'old_stamp',
+            'future_stamp',
+            'bag_loop',
+        )
+    ],
     _on_the_line('jump', stops=True, reason='times in a row'),
     _on_the_line('too_fast', stops=True, reason='runaway'),
     Fault('line stopped briefly', _stopped, stops=False, longest=0.3, weight=2.0),
     Fault('line stopped', _stopped, stops=True, reason=STALE, longest=UNTIL_STALE),
     Fault('line killed', _killed, stops=True, reason=STALE, weight=0.3, breaks_books=True),
     # Seen by the watchdog or by the next state, whichever comes first after the pause.
-    Fault('node stopped', _node_stopped, stops=True, reason=f', limit {STATE_TIMEOUT:.3f} s',
-          longest=UNTIL_STALE, breaks_books=True),
-    Fault('second publisher of states', _second_state_publisher, stops=True,
-          reason='publishers on', breaks_books=True),
-    Fault('second source of efforts', _second_source_of_efforts, stops=True,
-          reason='other publisher'),
+    Fault(
+        'node stopped',
+        _node_stopped,
+        stops=True,
+        reason=f', limit {STATE_TIMEOUT:.3f} s',
+        longest=UNTIL_STALE,
+        breaks_books=True,
+    ),
+    Fault(
+        'second publisher of states',
+        _second_state_publisher,
+        stops=True,
+        reason='publishers on',
+        breaks_books=True,
+    ),
+    Fault(
+        'second source of efforts', _second_source_of_efforts, stops=True, reason='other publisher'
+    ),
     Fault('pushed', _pushed, stops=False),
 ]

@@ -57,8 +57,10 @@ class Line:
         """
         kind, _, every = fault.partition('/')
         if kind not in FAULTS or (every and not every.isdecimal()) or every == '0':
-            raise ValueError(f"expected one of {', '.join(sorted(FAULTS))}, with '/7' behind it "
-                             f'for every seventh message, got {fault!r}')
+            raise ValueError(
+                f"expected one of {', '.join(sorted(FAULTS))}, with '/7' behind it "
+                f'for every seventh message, got {fault!r}'
+            )
         self.fault = fault
         self._act, self._every = FAULTS[kind], int(every or 1)
         self._count = self._busy = 0
@@ -104,8 +106,9 @@ class Line:
     def _parts(self, message):
         # One at a time, as two broadcasters send them: a queue has room for the newest only.
         half, count = len(message.name) // 2, len(message.name)
-        return [_chosen(message, range(half) if self._count // self._every % 2
-                        else range(half, count))]
+        return [
+            _chosen(message, range(half) if self._count // self._every % 2 else range(half, count))
+        ]
 
     def _half(self, message):
         return [_chosen(message, range(len(message.name) // 2))]
@@ -114,8 +117,11 @@ class Line:
         return [message, message]
 
     def _nan(self, message):
-        return [self._with_one_position(message, self._rng.choice(
-            [float('nan'), float('inf'), -float('inf')]))]
+        return [
+            self._with_one_position(
+                message, self._rng.choice([float('nan'), float('inf'), -float('inf')])
+            )
+        ]
 
     def _all_nan(self, message):
         return [_changed(message, position=[float('nan')] * len(message.name))]
@@ -168,12 +174,13 @@ class Line:
         if kind == 0:  # anything at all
             return [self._rng.randbytes(self._rng.randrange(len(data)))]
         if kind == 1:  # cut off
-            return [data[:self._rng.randrange(len(data))]]
+            return [data[: self._rng.randrange(len(data))]]
         # Some bytes of a good one, behind the stamp and before the numbers: whatever bytes a
         # number has, it is one, and may well be that of an arm that runs away.
         wrong = bytearray(data)
-        numbers = sum(8 + 8 * len(field) for field in (
-            message.position, message.velocity, message.effort))
+        numbers = sum(
+            8 + 8 * len(field) for field in (message.position, message.velocity, message.effort)
+        )
         for _ in range(8):
             wrong[self._rng.randrange(12, len(wrong) - numbers)] = self._rng.randrange(256)
         return [bytes(wrong)]
@@ -189,8 +196,15 @@ class Line:
         # Made once, of bytes: as Python strings they would take the relay seconds.
         if count not in self._big:
             names = _COUNT.pack(2) + b'j\0\0\0'
-            head = (_REPRESENTATION + _STAMP.pack(0, 0) + _COUNT.pack(1) + b'\0\0\0\0'
-                    + _COUNT.pack(count) + names * count + _COUNT.pack(count))
+            head = (
+                _REPRESENTATION
+                + _STAMP.pack(0, 0)
+                + _COUNT.pack(1)
+                + b'\0\0\0\0'
+                + _COUNT.pack(count)
+                + names * count
+                + _COUNT.pack(count)
+            )
             gap = bytes(-(len(head) - len(_REPRESENTATION)) % 8)
             self._big[count] = head + gap + bytes(8 * count) + _COUNT.pack(0) + _COUNT.pack(0)
         return self._big[count]
@@ -252,11 +266,17 @@ def _at(message, stamp):
 def _changed(message, **fields):
     kept = {field: getattr(message, field) for field in ('name', 'position', 'velocity', 'effort')}
     changed = JointState(**{**kept, **fields})
-    changed.header = type(message.header)(stamp=message.header.stamp,
-                                          frame_id=message.header.frame_id)
+    changed.header = type(message.header)(
+        stamp=message.header.stamp, frame_id=message.header.frame_id
+    )
     return changed
 
 
 def _chosen(message, order):
-    return _changed(message, **{field: [getattr(message, field)[i] for i in order]
-                                for field in ('name', 'position', 'velocity', 'effort')})
+    return _changed(
+        message,
+        **{
+            field: [getattr(message, field)[i] for i in order]
+            for field in ('name', 'position', 'velocity', 'effort')
+        },
+    )

@@ -42,9 +42,11 @@ class RigProcesses(Processes):
         """
         folder = Path('/proc') / str(self._running[name].pid)
         fields = dict(line.split(':', 1) for line in (folder / 'status').read_text().splitlines())
-        return {'memory': int(fields['VmRSS'].split()[0]) / 1024,
-                'files': len(list((folder / 'fd').iterdir())),
-                'threads': int(fields['Threads'])}
+        return {
+            'memory': int(fields['VmRSS'].split()[0]) / 1024,
+            'files': len(list((folder / 'fd').iterdir())),
+            'threads': int(fields['Threads']),
+        }
 
     def __exit__(self, *error):
         """End all processes; one that was stopped could not."""

@@ -38,8 +38,9 @@ class Relay(Node):
         self._sent = 0
         self._states = self.create_publisher(JointState, 'joint_states', 10)
         self._clock_publisher = self.create_publisher(Clock, '/clock', 1)
-        self.create_subscription(JointState, 'robot/joint_states', self._received,
-                                 qos_profile_sensor_data, raw=True)
+        self.create_subscription(
+            JointState, 'robot/joint_states', self._received, qos_profile_sensor_data, raw=True
+        )
         self.create_service(Trigger, '~/sent', self._say_sent)
 
     def _received(self, data):
@@ -48,8 +49,11 @@ class Relay(Node):
             clock = Clock()
             clock.clock.sec, clock.clock.nanosec = divmod(stamp_of(data), 1_000_000_000)
             self._clock_publisher.publish(clock)
-        items = [data] if self._line.fault == 'none' else self._line.out(
-            deserialize_message(data, JointState))
+        items = (
+            [data]
+            if self._line.fault == 'none'
+            else self._line.out(deserialize_message(data, JointState))
+        )
         for item in items:
             self._states.publish(item)
             self._sent += 1

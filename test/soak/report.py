@@ -25,34 +25,49 @@ def failures(soak, client):
 
     """
     judge, books = client.judge, soak.books
-    found = [f'{name}: {failure}' for name, tally in soak.tallies.items()
-             for failure in tally.failures]
+    found = [
+        f'{name}: {failure}' for name, tally in soak.tallies.items() for failure in tally.failures
+    ]
     found += [f'command {text}' for text in judge.violations]
     if judge.count > len(judge.violations):
         found.append(f'... and {judge.count - len(judge.violations)} more wrong commands')
     if books.missing or books.surplus:
-        found.append(f'of {books.sent} joint states, the node does not account for '
-                     f'{books.missing} and counts {books.surplus} too many')
+        found.append(
+            f'of {books.sent} joint states, the node does not account for '
+            f'{books.missing} and counts {books.surplus} too many'
+        )
     if books.unanswered:
-        found.append(f'of {books.active} joint states accepted while ACTIVE, {books.unanswered} '
-                     'had no command, or several')
+        found.append(
+            f'of {books.active} joint states accepted while ACTIVE, {books.unanswered} '
+            'had no command, or several'
+        )
     published = client.number('output', 'commands')
     if judge.commands + judge.lost != published:
-        found.append(f'the node says that it has published {published:.0f} commands, got '
-                     f'{judge.commands} and missed {judge.lost}')
+        found.append(
+            f'the node says that it has published {published:.0f} commands, got '
+            f'{judge.commands} and missed {judge.lost}'
+        )
     if soak.before:
         if soak.after['memory'] - soak.before['memory'] > MEMORY:
-            found.append(f'the memory of the node grew from {soak.before["memory"]:.1f} to '
-                         f'{soak.after["memory"]:.1f} MB, expected at most {MEMORY:g} more')
-        found += [f'the node had {soak.before[what]} {what} and has {soak.after[what]} now'
-                  for what in ('files', 'threads') if soak.after[what] > soak.before[what]]
+            found.append(
+                f'the memory of the node grew from {soak.before["memory"]:.1f} to '
+                f'{soak.after["memory"]:.1f} MB, expected at most {MEMORY:g} more'
+            )
+        found += [
+            f'the node had {soak.before[what]} {what} and has {soak.after[what]} now'
+            for what in ('files', 'threads')
+            if soak.after[what] > soak.before[what]
+        ]
     return found
 
 
 def print_report(console, soak, client, seed):
     """Print the figures of a soak on a rich.console.Console."""
-    table = Table(box=box.SIMPLE_HEAD, title=f'{soak.duration:.0f} s of soak, seed {seed}',
-                  title_justify='left')
+    table = Table(
+        box=box.SIMPLE_HEAD,
+        title=f'{soak.duration:.0f} s of soak, seed {seed}',
+        title_justify='left',
+    )
     table.add_column('', no_wrap=True)
     table.add_column('', justify='right', no_wrap=True)
     for label, value in _figures(soak, client):
@@ -77,8 +92,7 @@ def _figures(soak, client):
     yield '  wrong', str(judge.count)
     for label, share in (('median', 0.5), ('p99', 0.99), ('worst', 1.0)):
         value = latency.quantile(share)
-        yield (f'state to command, {label}',
-               '-' if math.isnan(value) else f'{1e3 * value:.2f} ms')
+        yield (f'state to command, {label}', '-' if math.isnan(value) else f'{1e3 * value:.2f} ms')
     for what, unit in (('memory', ' MB'), ('files', ''), ('threads', '')):
         before, after = (vitals.get(what, math.nan) for vitals in (soak.before, soak.after))
         digits = 1 if what == 'memory' else 0
@@ -96,6 +110,11 @@ def _faults(soak):
         if tally.injected:
             table.add_row(name, str(tally.injected), str(tally.survived), str(tally.paused))
     table.add_section()
-    table.add_row('all', *(str(sum(getattr(tally, what) for tally in soak.tallies.values()))
-                           for what in ('injected', 'survived', 'paused')))
+    table.add_row(
+        'all',
+        *(
+            str(sum(getattr(tally, what) for tally in soak.tallies.values()))
+            for what in ('injected', 'survived', 'paused')
+        ),
+    )
     return table

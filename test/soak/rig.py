@@ -55,8 +55,10 @@ class Rig:
         self.urdf_text = urdf.read_text()
         self.arm = MujocoArm(self.urdf_text)
         self.processes = RigProcesses()
-        self._seed, self._robot_options = seed, (
-            '-p', f'robot_description_file:={urdf}', '-p', f'rate:={rate}')
+        self._seed, self._robot_options = (
+            seed,
+            ('-p', f'robot_description_file:={urdf}', '-p', f'rate:={rate}'),
+        )
         self._parameters = parameters
         self._special = {}
         self.start_missing()
@@ -72,13 +74,22 @@ class Rig:
     def start_missing(self):
         """Start what does not run: robot, line, node."""
         if not self.processes.is_running('robot'):
-            self.processes.start('robot', 'dynamics_node.ros.demo.simulated_robot', '--ros-args',
-                                 '-r', 'joint_states:=robot/joint_states', *self._robot_options)
+            self.processes.start(
+                'robot',
+                'dynamics_node.ros.demo.simulated_robot',
+                '--ros-args',
+                '-r',
+                'joint_states:=robot/joint_states',
+                *self._robot_options,
+            )
         if not self.processes.is_running('relay'):
             self.processes.start('relay', 'soak.relay', '--ros-args', '-p', f'seed:={self._seed}')
         if not self.processes.is_running('node'):
-            arguments = [item for name, value in {**self._parameters, **self._special}.items()
-                         for item in ('-p', f'{name}:={value}')]
+            arguments = [
+                item
+                for name, value in {**self._parameters, **self._special}.items()
+                for item in ('-p', f'{name}:={value}')
+            ]
             self.processes.start('node', 'dynamics_node.ros.main', '--ros-args', *arguments)
 
     def use_node(self, **special):
@@ -165,10 +176,13 @@ class Rig:
         times = [time for time, _ in self.client.truth][-1000:]
         gap = np.diff(times).max(initial=0.0)
         output = self.client.outputs[-1] if self.client.outputs else None
-        return '\n'.join([
-            f'{output.name}: {output.reason}' if output else 'no state of the output',
-            f'longest gap between the last {len(times)} states of the robot: {gap:.3f} s',
-            *self.processes.lines('node')[-10:]])
+        return '\n'.join(
+            [
+                f'{output.name}: {output.reason}' if output else 'no state of the output',
+                f'longest gap between the last {len(times)} states of the robot: {gap:.3f} s',
+                *self.processes.lines('node')[-10:],
+            ]
+        )
 
     def until_fault(self, timeout=10.0):
         """Wait until a stop has ended in FAULT, catch the arm, and return the reason."""

@@ -91,10 +91,16 @@ class Soak:
         self._written = deque(maxlen=REMEMBERED)
         node, client = rig.client.node, rig.client
         # As bytes, of which only the stamps are read: there are a thousand in a second.
-        node.create_subscription(JointState, 'joint_states', self._on_state,
-                                 qos_profile_sensor_data, raw=True)
-        node.create_subscription(JointState, 'dynamics_node/gravity_torque', self._on_answer,
-                                 QoSProfile(depth=100), raw=True)
+        node.create_subscription(
+            JointState, 'joint_states', self._on_state, qos_profile_sensor_data, raw=True
+        )
+        node.create_subscription(
+            JointState,
+            'dynamics_node/gravity_torque',
+            self._on_answer,
+            QoSProfile(depth=100),
+            raw=True,
+        )
         client.on_command = self.latency.command
         client.on_output = self.latency.state
         client.on_diagnostics = self._on_diagnostics
@@ -117,9 +123,13 @@ class Soak:
         rig.until(lambda: client.output == 'READY')
         client.until_diagnosed()
         client.settle(everything=True)
-        self.rejected.update({key.removeprefix('rejected: '): int(value)
-                              for key, value in client.diagnostics['joint states'].items()
-                              if key.startswith('rejected: ')})
+        self.rejected.update(
+            {
+                key.removeprefix('rejected: '): int(value)
+                for key, value in client.diagnostics['joint states'].items()
+                if key.startswith('rejected: ')
+            }
+        )
         self.duration = time.monotonic() - begin
 
     def _choose(self):
@@ -186,13 +196,17 @@ class Soak:
         # Of a stop for silence: whether the line was silent, and nobody had asked it to be. What
         # was written shortly before the stop cannot have been read, so that does not count.
         client = self._client
-        stops = [(time, output.reason) for time, output in zip(
-            client.output_times[changes:], client.outputs[changes:]) if output.name == 'STOPPING']
+        stops = [
+            (time, output.reason)
+            for time, output in zip(client.output_times[changes:], client.outputs[changes:])
+            if output.name == 'STOPPING'
+        ]
         if not stops or STALE not in stops[0][1]:
             return False
         end = stops[0][0]
-        return not any(end - 0.9 * STATE_TIMEOUT < time < end - 0.1 * STATE_TIMEOUT
-                       for time in self._written)
+        return not any(
+            end - 0.9 * STATE_TIMEOUT < time < end - 0.1 * STATE_TIMEOUT for time in self._written
+        )
 
     def _note(self, tally, name, failure, is_pause):
         if is_pause:
@@ -231,8 +245,10 @@ class Soak:
         self._rig.until(lambda: client.output == 'FAULT')
         client.until_diagnosed()
         states = 'joint states'
-        return Account(client.sent(), *(int(client.number(states, key)) for key in (
-            'accepted', 'rejected', 'skipped')))
+        return Account(
+            client.sent(),
+            *(int(client.number(states, key)) for key in ('accepted', 'rejected', 'skipped')),
+        )
 
     # -----------------------------------------------------------------------------------------
 
@@ -248,6 +264,8 @@ class Soak:
         self.latency.answer(self._client.time_of(info['source_timestamp']), stamp_of(data))
 
     def _on_diagnostics(self, diagnostics):
-        self.books.diagnosed(diagnostics['state machine']['state'],
-                             int(diagnostics['joint states'].get('accepted', 0)),
-                             int(diagnostics['output']['commands']))
+        self.books.diagnosed(
+            diagnostics['state machine']['state'],
+            int(diagnostics['joint states'].get('accepted', 0)),
+            int(diagnostics['output']['commands']),
+        )

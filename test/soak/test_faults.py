@@ -7,8 +7,12 @@ from soak.faults import FAULTS, STATE_TIMEOUT
 
 def test_a_stopped_node_goes_on_before_a_fault_is_expected_of_it():
     done = []
-    rig = SimpleNamespace(during=done.append, processes=SimpleNamespace(
-        send=lambda process, number: done.append((process, number.name))))
+    rig = SimpleNamespace(
+        during=done.append,
+        processes=SimpleNamespace(
+            send=lambda process, number: done.append((process, number.name))
+        ),
+    )
     [fault] = [fault for fault in FAULTS if fault.name == 'node stopped']
     with fault.inflict(rig):
         assert [done[0], done[2]] == [('node', 'SIGSTOP'), ('node', 'SIGCONT')]

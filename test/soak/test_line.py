@@ -13,8 +13,12 @@ NAMES = ['a', 'b', 'c', 'd']
 
 def state(k=0, name=NAMES):
     """Return the k-th state of a robot: its joints stand at k, k + 0.1, ..."""
-    message = JointState(name=list(name), position=[k + 0.1 * i for i in range(len(name))],
-                         velocity=[0.5] * len(name), effort=[9.0] * len(name))
+    message = JointState(
+        name=list(name),
+        position=[k + 0.1 * i for i in range(len(name))],
+        velocity=[0.5] * len(name),
+        effort=[9.0] * len(name),
+    )
     message.header.stamp = Time(sec=1000 + k, nanosec=7)
     return message
 
@@ -34,8 +38,12 @@ def only(outputs):
 
 def by_name(message):
     """Return position, velocity and effort by name."""
-    return {name: (q, qd, tau) for name, q, qd, tau in zip(
-        message.name, message.position, message.velocity, message.effort)}
+    return {
+        name: (q, qd, tau)
+        for name, q, qd, tau in zip(
+            message.name, message.position, message.velocity, message.effort
+        )
+    }
 
 
 def test_without_a_fault_it_is_a_line():
@@ -95,8 +103,11 @@ def test_duplicated():
 def test_nan_is_one_position_that_is_not_finite():
     out = [message for [message] in put_through('nan', 30)]
     assert all(sum(not math.isfinite(q) for q in message.position) == 1 for message in out)
-    assert {repr(q) for message in out for q in message.position
-            if not math.isfinite(q)} == {'nan', 'inf', '-inf'}
+    assert {repr(q) for message in out for q in message.position if not math.isfinite(q)} == {
+        'nan',
+        'inf',
+        '-inf',
+    }
     assert all(map(math.isnan, only(put_through('all_nan')).position))
 
 
@@ -172,5 +183,6 @@ def test_a_serialised_state_is_moved_in_time():
     earlier = shifted(data, -2_000_000_008)
     assert stamp_of(data) == 1_000_000_000_007
     assert deserialize_message(earlier, JointState).header.stamp == Time(
-        sec=997, nanosec=999_999_999)
+        sec=997, nanosec=999_999_999
+    )
     assert by_name(deserialize_message(earlier, JointState)) == by_name(state(0))

@@ -16,10 +16,16 @@ def run():
     path = os.pathsep.join([str(TEST), str(TEST.parent), os.environ.get('PYTHONPATH', '')])
 
     def run(*arguments):
-        done = subprocess.run([sys.executable, '-m', 'soak', *arguments], text=True, timeout=110,
-                              env={**os.environ, 'PYTHONPATH': path}, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT)
+        done = subprocess.run(
+            [sys.executable, '-m', 'soak', *arguments],
+            text=True,
+            timeout=110,
+            env={**os.environ, 'PYTHONPATH': path},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
         return done.returncode, done.stdout
+
     return run
 
 

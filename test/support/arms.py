@@ -6,9 +6,17 @@ from xml.etree import ElementTree
 G = 9.81
 
 
-def arm(masses=(3.0, 2.5, 2.0, 1.2, 0.8), lengths=(0.3, 0.3, 0.25, 0.2, 0.15), *, tool=True,
-        axes=('0 0 1', '0 1 0', '0 1 0', '0 1 0', '1 0 0'), limits=(-2.5, 2.5), effort=300,
-        visual=True, name='arm'):
+def arm(
+    masses=(3.0, 2.5, 2.0, 1.2, 0.8),
+    lengths=(0.3, 0.3, 0.25, 0.2, 0.15),
+    *,
+    tool=True,
+    axes=('0 0 1', '0 1 0', '0 1 0', '0 1 0', '1 0 0'),
+    limits=(-2.5, 2.5),
+    effort=300,
+    visual=True,
+    name='arm',
+):
     """
     Return a serial arm as URDF text: links 'base', 'link1'... along x, joints 'joint1'...
 
@@ -26,25 +34,41 @@ def arm(masses=(3.0, 2.5, 2.0, 1.2, 0.8), lengths=(0.3, 0.3, 0.25, 0.2, 0.15), *
             f'<joint name="joint{i}" type="revolute"><parent link="{parent}"/>'
             f'<child link="link{i}"/><origin xyz="{before} 0 0"/><axis xyz="{axes[i - 1]}"/>'
             f'<limit lower="{limits[0]}" upper="{limits[1]}" effort="{effort}" velocity="2"/>'
-            '</joint>')
+            '</joint>'
+        )
         before = length
     if tool:
         parts.append(f'<link name="gripper">{shape}{rod(0.7, 0.1)}</link>')
-        parts.append(f'<joint name="mount" type="fixed"><parent link="link{len(masses)}"/>'
-                     f'<child link="gripper"/><origin xyz="{before} 0 0"/></joint>')
+        parts.append(
+            f'<joint name="mount" type="fixed"><parent link="link{len(masses)}"/>'
+            f'<child link="gripper"/><origin xyz="{before} 0 0"/></joint>'
+        )
     return f'<robot name="{name}">' + ''.join(parts) + '</robot>'
 
 
 def rod(mass, length, thickness=0.06):
     """Return the <inertial> of a homogeneous box along x."""
     along, across = mass * thickness**2 / 6.0, mass * (length**2 + thickness**2) / 12.0
-    return (f'<inertial><origin xyz="{length / 2.0!r} 0 0"/><mass value="{mass!r}"/>'
-            f'<inertia ixx="{along!r}" ixy="0" ixz="0" iyy="{across!r}" iyz="0" '
-            f'izz="{across!r}"/></inertial>')
+    return (
+        f'<inertial><origin xyz="{length / 2.0!r} 0 0"/><mass value="{mass!r}"/>'
+        f'<inertia ixx="{along!r}" ixy="0" ixz="0" iyy="{across!r}" iyz="0" '
+        f'izz="{across!r}"/></inertial>'
+    )
 
 
-def changed(text, name, *, inertial=True, mass=None, com=None, tensor=None, shape=True, axis=True,
-            limit=None, kind=None):
+def changed(
+    text,
+    name,
+    *,
+    inertial=True,
+    mass=None,
+    com=None,
+    tensor=None,
+    shape=True,
+    axis=True,
+    limit=None,
+    kind=None,
+):
     """
     Return URDF text with something else in a link or joint.
 
@@ -64,8 +88,10 @@ def changed(text, name, *, inertial=True, mass=None, com=None, tensor=None, shap
         origin.set('xyz', ' '.join(map(repr, com)))
     if tensor is not None:
         if not isinstance(tensor, dict):
-            tensor = {key: tensor if key in ('ixx', 'iyy', 'izz') else 0.0
-                      for key in ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')}
+            tensor = {
+                key: tensor if key in ('ixx', 'iyy', 'izz') else 0.0
+                for key in ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
+            }
         for key, value in tensor.items():
             own.find('inertia').set(key, repr(value))
     if not inertial and own is not None:
@@ -89,15 +115,18 @@ def scaled_tensor(text, name, factor):
     """Return URDF text with the tensor of a link times a factor."""
     robot = ElementTree.fromstring(text)
     inertia = robot.find(f"link[@name='{name}']/inertial/inertia")
-    return changed(text, name, tensor={key: factor * float(value)
-                                       for key, value in inertia.attrib.items()})
+    return changed(
+        text, name, tensor={key: factor * float(value) for key, value in inertia.attrib.items()}
+    )
 
 
 def pendulum(mass=2.0, com=0.4, lower=-math.pi, upper=math.pi, effort=20.0):
     """Return a point mass on one horizontal joint; angle 0 is along x, so G = m g r cos q."""
-    return (f'<robot name="pendulum"><link name="base"/><link name="rod"><inertial>'
-            f'<origin xyz="{com} 0 0"/><mass value="{mass}"/><inertia ixx="0.01" ixy="0" ixz="0" '
-            'iyy="0.01" iyz="0" izz="0.01"/></inertial></link><joint name="swing" '
-            'type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 -1 0"/>'
-            f'<limit lower="{lower}" upper="{upper}" effort="{effort}" velocity="1"/></joint>'
-            '</robot>')
+    return (
+        f'<robot name="pendulum"><link name="base"/><link name="rod"><inertial>'
+        f'<origin xyz="{com} 0 0"/><mass value="{mass}"/><inertia ixx="0.01" ixy="0" ixz="0" '
+        'iyy="0.01" iyz="0" izz="0.01"/></inertial></link><joint name="swing" '
+        'type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 -1 0"/>'
+        f'<limit lower="{lower}" upper="{upper}" effort="{effort}" velocity="1"/></joint>'
+        '</robot>'
+    )

@@ -23,10 +23,18 @@ PATIENCE = 120.0  # [s] for one answer; three dimensions without a graphics card
 
 # No service of the browser's maker, no name is ever resolved; 3D by the processor.
 _OPTIONS = (
-    '--headless', '--remote-debugging-pipe', '--no-first-run', '--disable-sync',
-    '--disable-background-networking', '--disable-component-update', '--disable-extensions',
-    '--disable-dev-shm-usage', '--no-default-browser-check', '--mute-audio',
-    '--host-resolver-rules=MAP * ~NOTFOUND')
+    '--headless',
+    '--remote-debugging-pipe',
+    '--no-first-run',
+    '--disable-sync',
+    '--disable-background-networking',
+    '--disable-component-update',
+    '--disable-extensions',
+    '--disable-dev-shm-usage',
+    '--no-default-browser-check',
+    '--mute-audio',
+    '--host-resolver-rules=MAP * ~NOTFOUND',
+)
 _SOFTWARE_3D = ('--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader')
 _NO_3D = ('--disable-gpu', '--disable-software-rasterizer', '--disable-3d-apis')
 
@@ -50,10 +58,13 @@ def require_browser():
     if path is None:
         chosen = os.environ.get('DYNAMICS_NODE_BROWSER')
         if chosen:
-            pytest.fail(f'DYNAMICS_NODE_BROWSER: expected a browser, got {chosen!r}, which is no '
-                        'program')
-        said = ('no browser found: install chromium (apt-get install chromium), or set '
-                'DYNAMICS_NODE_BROWSER to one')
+            pytest.fail(
+                f'DYNAMICS_NODE_BROWSER: expected a browser, got {chosen!r}, which is no program'
+            )
+        said = (
+            'no browser found: install chromium (apt-get install chromium), or set '
+            'DYNAMICS_NODE_BROWSER to one'
+        )
         if os.environ.get('DYNAMICS_NODE_BROWSER_REQUIRED', '') not in ('', '0'):
             pytest.fail(said)
         pytest.skip(said)
@@ -67,15 +78,18 @@ def browser(has_3d=True):
     read_answers, write_answers = os.pipe()
     read_orders, write_orders = os.pipe()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        options = [*_OPTIONS, *(_SOFTWARE_3D if has_3d else _NO_3D),
-                   f'--user-data-dir={profile}']
+        options = [*_OPTIONS, *(_SOFTWARE_3D if has_3d else _NO_3D), f'--user-data-dir={profile}']
         if os.geteuid() == 0:
             options.append('--no-sandbox')  # it refuses to be started by root otherwise
         # The browser reads orders from 3 and writes answers to 4.
         process = subprocess.Popen(
             ['bash', '-c', f'exec "$0" "$@" 3<&{read_orders} 4>&{write_answers}', path, *options],
-            pass_fds=(read_orders, write_answers), stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+            pass_fds=(read_orders, write_answers),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
         os.close(read_orders)
         os.close(write_answers)
         try:
@@ -113,8 +127,9 @@ class Tab:
         self.requests, self.blocked, self.complaints = [], [], []
         self._addresses = {}
         target = self.order('Target.createTarget', session=False, url='about:blank')['targetId']
-        self._session = self.order('Target.attachToTarget', session=False, targetId=target,
-                                   flatten=True)['sessionId']
+        self._session = self.order(
+            'Target.attachToTarget', session=False, targetId=target, flatten=True
+        )['sessionId']
         for domain in ('Page', 'Runtime', 'Log', 'Network'):
             self.order(f'{domain}.enable')
 
@@ -139,18 +154,26 @@ class Tab:
 
     def resize(self, width, height=900):
         """Give the window another size, in pixels."""
-        self.order('Emulation.setDeviceMetricsOverride', width=width, height=height,
-                   deviceScaleFactor=1, mobile=False)
+        self.order(
+            'Emulation.setDeviceMetricsOverride',
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
 
     def scheme(self, name):
         """Let the system ask for 'light' or 'dark'."""
-        self.order('Emulation.setEmulatedMedia',
-                   features=[{'name': 'prefers-color-scheme', 'value': name}])
+        self.order(
+            'Emulation.setEmulatedMedia',
+            features=[{'name': 'prefers-color-scheme', 'value': name}],
+        )
 
     def evaluate(self, expression):
         """Return what a JavaScript expression gives, a promise's value too."""
-        answer = self.order('Runtime.evaluate', expression=expression, returnByValue=True,
-                            awaitPromise=True)
+        answer = self.order(
+            'Runtime.evaluate', expression=expression, returnByValue=True, awaitPromise=True
+        )
         assert 'exceptionDetails' not in answer, answer['exceptionDetails']
         return answer['result'].get('value')
 
@@ -163,8 +186,10 @@ class Tab:
 
     def settle(self):
         """Wait until everything that was asked for is drawn."""
-        self.evaluate('new Promise((done) => requestAnimationFrame(() => '
-                      'requestAnimationFrame(() => setTimeout(done, 50))))')
+        self.evaluate(
+            'new Promise((done) => requestAnimationFrame(() => '
+            'requestAnimationFrame(() => setTimeout(done, 50))))'
+        )
 
     def screenshot(self, path):
         """Write what is seen now as PNG."""
@@ -188,7 +213,8 @@ class Tab:
     def _receive(self, deadline):
         left = deadline - time.monotonic()
         assert left > 0.0 and select.select([self._answers], [], [], left)[0], (
-            f'the browser did not answer within {PATIENCE:.0f} s')
+            f'the browser did not answer within {PATIENCE:.0f} s'
+        )
         data = os.read(self._answers, 1 << 20)
         assert data, 'the browser has ended'
         *messages, self._rest = (self._rest + data).split(b'\0')
@@ -209,8 +235,11 @@ class Tab:
             self.blocked.append(self._addresses[parameters['requestId']])
         elif event == 'Runtime.exceptionThrown':
             self.complaints.append(json.dumps(parameters['exceptionDetails']))
-        elif event == 'Runtime.consoleAPICalled' and parameters['type'] in ('error', 'warning',
-                                                                            'assert'):
+        elif event == 'Runtime.consoleAPICalled' and parameters['type'] in (
+            'error',
+            'warning',
+            'assert',
+        ):
             self.complaints.append(json.dumps(parameters['args']))
         elif event == 'Log.entryAdded' and parameters['entry']['level'] == 'error':
             self.complaints.append(json.dumps(parameters['entry']))

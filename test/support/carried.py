@@ -32,11 +32,17 @@ def with_payload_link(text, link, mass, com, inertia):
     str
 
     """
-    tensor = ' '.join(f'i{row}{column}="{inertia[i][j]:.17g}"'
-                      for i, row in enumerate('xyz') for j, column in enumerate('xyz') if i <= j)
+    tensor = ' '.join(
+        f'i{row}{column}="{inertia[i][j]:.17g}"'
+        for i, row in enumerate('xyz')
+        for j, column in enumerate('xyz')
+        if i <= j
+    )
     place = ' '.join(f'{value:.17g}' for value in com)
     end = text.rindex('</robot>')
-    return (f'{text[:end]}<link name="carried"><inertial><origin xyz="{place}"/>'
-            f'<mass value="{mass:.17g}"/><inertia {tensor}/></inertial></link>'
-            f'<joint name="carries" type="fixed"><parent link="{link}"/><child link="carried"/>'
-            '</joint></robot>')
+    return (
+        f'{text[:end]}<link name="carried"><inertial><origin xyz="{place}"/>'
+        f'<mass value="{mass:.17g}"/><inertia {tensor}/></inertial></link>'
+        f'<joint name="carries" type="fixed"><parent link="{link}"/><child link="carried"/>'
+        '</joint></robot>'
+    )

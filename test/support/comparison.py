@@ -20,8 +20,11 @@ def natural_scales(model, D, qd):
     """
     diagonal = np.sqrt(np.maximum(np.diag(D), 0.0))
     scale = np.outer(diagonal, diagonal)
-    return (scale, scale * np.abs(qd).max(initial=0.0),
-            np.linalg.norm(model.gravity) * np.sqrt(model.total_mass) * diagonal)
+    return (
+        scale,
+        scale * np.abs(qd).max(initial=0.0),
+        np.linalg.norm(model.gravity) * np.sqrt(model.total_mass) * diagonal,
+    )
 
 
 def assert_terms_agree(model, qd, actual, expected, relative):
@@ -33,7 +36,8 @@ def assert_terms_agree(model, qd, actual, expected, relative):
         worst = np.unravel_index(np.argmax(error - allowed), error.shape)
         assert (error <= allowed).all(), (
             f'{name}{list(map(int, worst))}: {mine[worst]!r}, expected {theirs[worst]!r}, '
-            f'scale {scale[worst]!r}')
+            f'scale {scale[worst]!r}'
+        )
 
 
 # An element's error is taken relative to the element, or to this part of its natural scale

@@ -29,5 +29,7 @@ def claim():
         else:
             port.detach()  # stays bound, and nobody complains of a socket that is left open
             return domain
-    raise RuntimeError(f'expected a free ROS domain from 1 to {DOMAINS}, found none: end test '
-                       'runs that were left behind')
+    raise RuntimeError(
+        f'expected a free ROS domain from 1 to {DOMAINS}, found none: end test '
+        'runs that were left behind'
+    )

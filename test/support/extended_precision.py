@@ -42,8 +42,9 @@ class ExtendedPrecision:
     def __init__(self, text, gravity=(0.0, 0.0, -9.81)):
         """Read URDF text."""
         if np.finfo(REAL).eps > 1e-18:
-            raise RuntimeError('expected 80-bit long doubles, this machine has none: '
-                               'run this on x86-64')
+            raise RuntimeError(
+                'expected 80-bit long doubles, this machine has none: run this on x86-64'
+            )
         self.gravity = np.array([*gravity, 0.0], dtype=REAL)
         robot = ElementTree.fromstring(text.encode())
         self._mimic = mimic_chains(robot)
@@ -68,8 +69,9 @@ class ExtendedPrecision:
     def dynamics(self, names, q, qd):
         """Return the terms for the independent joints in the order of names."""
         B, b = self.fold(names)
-        A, dA, ddA = self._transforms(B @ np.array(q, dtype=REAL) + b,
-                                      B @ np.array(qd, dtype=REAL))
+        A, dA, ddA = self._transforms(
+            B @ np.array(q, dtype=REAL) + b, B @ np.array(qd, dtype=REAL)
+        )
         count = len(self._order)
         # Rows of (6) and (7): tr(X J Yᵀ) is the sum over the elements of (X J) * Y.
         flat = dA.transpose(1, 0, 2, 3).reshape(count, -1)
@@ -79,7 +81,7 @@ class ExtendedPrecision:
         G = -(self.gravity @ (dA @ mass_points[:, None, :, None])[..., 0].sum(axis=0).T)
         points = (A @ mass_points[:, :, None])[:, :3, 0]
         V = -(points @ self.gravity[:3]).sum()
-        height = np.sqrt((self.gravity ** 2).sum()) * np.sqrt((points ** 2).sum(axis=1)).sum()
+        height = np.sqrt((self.gravity**2).sum()) * np.sqrt((points**2).sum(axis=1)).sum()
         qd = np.array(qd, dtype=REAL)
         D = B.T @ D @ B
         return ExactTerms(D, B.T @ C @ B, B.T @ G, qd @ D @ qd / 2, V, height)
@@ -115,12 +117,12 @@ def solve(matrix, right):
     n = len(x)
     for k in range(n):
         L[k, k] = np.sqrt(L[k, k])
-        L[k + 1:, k] /= L[k, k]
-        L[k + 1:, k + 1:] -= np.outer(L[k + 1:, k], L[k + 1:, k])
+        L[k + 1 :, k] /= L[k, k]
+        L[k + 1 :, k + 1 :] -= np.outer(L[k + 1 :, k], L[k + 1 :, k])
     for k in range(n):
         x[k] = (x[k] - L[k, :k] @ x[:k]) / L[k, k]
     for k in reversed(range(n)):
-        x[k] = (x[k] - L[k + 1:, k] @ x[k + 1:]) / L[k, k]
+        x[k] = (x[k] - L[k + 1 :, k] @ x[k + 1 :]) / L[k, k]
     return x
 
 
@@ -151,8 +153,11 @@ def _walk(robot):
     # The movable joints, parents first, and where every link is: (body, placement in it).
     joints = robot.findall('joint')
     children = {joint.find('child').get('link') for joint in joints}
-    links = {link.get('name'): (-1, np.eye(4, dtype=REAL)) for link in robot.findall('link')
-             if link.get('name') not in children}
+    links = {
+        link.get('name'): (-1, np.eye(4, dtype=REAL))
+        for link in robot.findall('link')
+        if link.get('name') not in children
+    }
     order = []
     waiting = joints
     while waiting:
@@ -178,9 +183,14 @@ def _pseudo_inertia(link):
     if inertial is None:
         return J
     entry = {key: _numbers(value)[0] for key, value in inertial.find('inertia').items()}
-    tensor = np.array([[entry['ixx'], entry['ixy'], entry['ixz']],
-                       [entry['ixy'], entry['iyy'], entry['iyz']],
-                       [entry['ixz'], entry['iyz'], entry['izz']]], dtype=REAL)
+    tensor = np.array(
+        [
+            [entry['ixx'], entry['ixy'], entry['ixz']],
+            [entry['ixy'], entry['iyy'], entry['iyz']],
+            [entry['ixz'], entry['iyz'], entry['izz']],
+        ],
+        dtype=REAL,
+    )
     J[:3, :3] = np.trace(tensor) / 2 * np.eye(3, dtype=REAL) - tensor
     J[3, 3] = _numbers(inertial.find('mass').get('value'))[0]
     placement = _placement(inertial.find('origin'))
@@ -191,11 +201,14 @@ def _placement(origin):
     result = np.eye(4, dtype=REAL)
     if origin is None:
         return result
-    (cr, sr), (cp, sp), (cy, sy) = ((np.cos(angle), np.sin(angle))
-                                    for angle in _numbers(origin.get('rpy', '0 0 0')))
-    result[:3, :3] = [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-                      [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-                      [-sp, cp * sr, cp * cr]]
+    (cr, sr), (cp, sp), (cy, sy) = (
+        (np.cos(angle), np.sin(angle)) for angle in _numbers(origin.get('rpy', '0 0 0'))
+    )
+    result[:3, :3] = [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
     result[:3, 3] = _numbers(origin.get('xyz', '0 0 0'))
     return result
 

@@ -48,7 +48,8 @@ def chain(masses, kind='continuous', length=0.3):
             f'</inertial></link><joint name="joint{i + 1}" type="{joint}"><parent '
             f'link="link{i}"/><child link="link{i + 1}"/><origin xyz="{length if i else 0.0} 0 0" '
             f'rpy="{turn[0]} {turn[1]} {turn[2]}"/><axis xyz="{axis[0]} {axis[1]} {axis[2]}"/>'
-            '<limit lower="-5" upper="5" effort="1" velocity="1"/></joint>')
+            '<limit lower="-5" upper="5" effort="1" velocity="1"/></joint>'
+        )
     return ''.join(parts) + '</robot>'
 
 
@@ -65,12 +66,15 @@ def on_a_rail(text, distance):
 def on_a_boom(text, distance):
     """Return a robot at the far end of a boom that turns, without mass of its own."""
     # The boom turns about the origin: the joint stands there and the robot far along its arm.
-    return _carried(_carried(text, 'fixed', distance, root='boom'), 'continuous', 0.0,
-                    inner='boom')
+    return _carried(
+        _carried(text, 'fixed', distance, root='boom'), 'continuous', 0.0, inner='boom'
+    )
 
 
-_CART = ('<inertial><mass value="100"/><inertia ixx="5" ixy="0" ixz="0" iyy="6" iyz="0" '
-         'izz="7"/></inertial>')
+_CART = (
+    '<inertial><mass value="100"/><inertia ixx="5" ixy="0" ixz="0" iyy="6" iyz="0" '
+    'izz="7"/></inertial>'
+)
 
 
 def _carried(text, kind, distance, inertial='', root='ground', inner=None):
@@ -79,18 +83,26 @@ def _carried(text, kind, distance, inertial='', root='ground', inner=None):
     cart, weld = inner, ''
     if inertial:
         cart = 'cart'
-        weld = (f'<link name="cart">{inertial}</link><joint name="weld" type="fixed"><parent '
-                f'link="cart"/><child link="{inner}"/></joint>')
-    return text.replace('</robot>', (
-        f'<link name="{root}"/>{weld}<joint name="carrier_of_{inner}" type="{kind}"><parent '
-        f'link="{root}"/><child link="{cart}"/><origin xyz="{distance} {-0.7 * distance} '
-        f'{0.3 * distance}" rpy="0.4 -0.5 0.6"/><axis xyz="0 0.6 0.8"/><limit lower="-5" '
-        'upper="5" effort="1" velocity="1"/></joint></robot>'))
+        weld = (
+            f'<link name="cart">{inertial}</link><joint name="weld" type="fixed"><parent '
+            f'link="cart"/><child link="{inner}"/></joint>'
+        )
+    return text.replace(
+        '</robot>',
+        (
+            f'<link name="{root}"/>{weld}<joint name="carrier_of_{inner}" type="{kind}"><parent '
+            f'link="{root}"/><child link="{cart}"/><origin xyz="{distance} {-0.7 * distance} '
+            f'{0.3 * distance}" rpy="0.4 -0.5 0.6"/><axis xyz="0 0.6 0.8"/><limit lower="-5" '
+            'upper="5" effort="1" velocity="1"/></joint></robot>'
+        ),
+    )
 
 
 def _root(text):
     from xml.etree import ElementTree
+
     robot = ElementTree.fromstring(text.encode())
     children = {joint.find('child').get('link') for joint in robot.findall('joint')}
-    return next(link.get('name') for link in robot.findall('link')
-                if link.get('name') not in children)
+    return next(
+        link.get('name') for link in robot.findall('link') if link.get('name') not in children
+    )

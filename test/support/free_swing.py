@@ -85,9 +85,15 @@ def integrate(forward_dynamics, start, tolerance=TOLERANCE, speeds=None):
     def derivative(_, x):
         return np.concatenate([x[n:], forward_dynamics(x[:n], x[n:], tau)])
 
-    solution = solve_ivp(derivative, (0.0, SECONDS), state,
-                         t_eval=np.linspace(0.0, SECONDS, SAMPLES + 1)[1:], method='DOP853',
-                         rtol=tolerance, atol=tolerance)
+    solution = solve_ivp(
+        derivative,
+        (0.0, SECONDS),
+        state,
+        t_eval=np.linspace(0.0, SECONDS, SAMPLES + 1)[1:],
+        method='DOP853',
+        rtol=tolerance,
+        atol=tolerance,
+    )
     if not solution.success:
         raise RuntimeError(f'the integration stopped: {solution.message}')
     return solution

@@ -12,9 +12,15 @@ NAMES = (
     '<b>bold</b>',
     '%{x} %{hovertext} &lt;i&gt;',
     '<a href="javascript:document.title=1">click</a>',
-    '\' onmouseover=\'document.title=1\' " onclick="document.title=1',
-    '<!--', ']]> --> */', '${document.title=1}`\\u003c', '$x^2$ {css}', '2026-01-01',
-    '&amp; &#60;script&#62;', 'a' * 90)
+    "' onmouseover='document.title=1' \" onclick=\"document.title=1",
+    '<!--',
+    ']]> --> */',
+    '${document.title=1}`\\u003c',
+    '$x^2$ {css}',
+    '2026-01-01',
+    '&amp; &#60;script&#62;',
+    'a' * 90,
+)
 
 
 def hostile_urdf():
@@ -31,11 +37,13 @@ def hostile_urdf():
     """
     text = ARM7.read_text()
     old = dict.fromkeys(re.findall(r'<(?:link|joint) name="([^"]+)"', text))
-    names = {name: f'{attack}{number}'
-             for number, (name, attack) in enumerate(zip(old, cycle(NAMES)))}
+    names = {
+        name: f'{attack}{number}' for number, (name, attack) in enumerate(zip(old, cycle(NAMES)))
+    }
     for name, attack in names.items():
         text = text.replace(f'"{name}"', quoteattr(attack))
     names['robot'] = '</title><script>document.title="pwned"</script>'
-    text = re.sub(r'<robot name="[^"]*"',
-                  lambda _: f'<robot name={quoteattr(names["robot"])}', text, count=1)
+    text = re.sub(
+        r'<robot name="[^"]*"', lambda _: f'<robot name={quoteattr(names["robot"])}', text, count=1
+    )
     return text, names

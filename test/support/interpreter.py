@@ -5,8 +5,14 @@ import math
 from dynamics_node.kernels.specialised.symbols import Symbol
 
 _FUNCTIONS = {
-    'add': lambda a, b: a + b, 'subtract': lambda a, b: a - b, 'multiply': lambda a, b: a * b,
-    'divide': lambda a, b: a / b, 'negate': lambda a: -a, 'sin': math.sin, 'cos': math.cos}
+    'add': lambda a, b: a + b,
+    'subtract': lambda a, b: a - b,
+    'multiply': lambda a, b: a * b,
+    'divide': lambda a, b: a / b,
+    'negate': lambda a: -a,
+    'sin': math.sin,
+    'cos': math.cos,
+}
 
 
 def run(program, results, **inputs):

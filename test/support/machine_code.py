@@ -4,4 +4,5 @@ from dynamics_node.kernels.specialised import is_supported
 import pytest
 
 needs_machine_code = pytest.mark.skipif(
-    not is_supported(), reason='machine code of robots needs CPython 3.11 or later')
+    not is_supported(), reason='machine code of robots needs CPython 3.11 or later'
+)

@@ -12,9 +12,11 @@ def mimic_chains(robot):
     for joint in robot.findall('joint'):
         element = joint.find('mimic')
         if element is not None and joint.get('type') != 'fixed':
-            mimic[joint.get('name')] = (element.get('joint'),
-                                        float(element.get('multiplier', 1.0)),
-                                        float(element.get('offset', 0.0)))
+            mimic[joint.get('name')] = (
+                element.get('joint'),
+                float(element.get('multiplier', 1.0)),
+                float(element.get('offset', 0.0)),
+            )
     chains = {}
     for name in mimic:
         leader, multiplier, offset = mimic[name]

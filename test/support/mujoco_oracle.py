@@ -21,8 +21,10 @@ mujoco.set_mju_user_warning(logging.getLogger('mujoco').debug)
 
 # A body that MuJoCo accepts, turned and away from the origin: for one in the middle of its
 # frame MuJoCo takes short cuts that would not see what is written into it later.
-_PLACEHOLDER = ('<inertial><origin xyz="0.1 0.2 0.3" rpy="0.1 0.2 0.3"/><mass value="1"/><inertia '
-                'ixx="0.3" ixy="0" ixz="0" iyy="0.4" iyz="0" izz="0.5"/></inertial>')
+_PLACEHOLDER = (
+    '<inertial><origin xyz="0.1 0.2 0.3" rpy="0.1 0.2 0.3"/><mass value="1"/><inertia '
+    'ixx="0.3" ixy="0" ixz="0" iyy="0.4" iyz="0" izz="0.5"/></inertial>'
+)
 
 
 class MujocoOracle:
@@ -98,8 +100,11 @@ class MujocoOracle:
         self.data.qvel[:] = B @ qd
         mujoco.mj_energyPos(self.model, self.data)
         mujoco.mj_energyVel(self.model, self.data)
-        static = -(self.model.body_mass[self._static] @ self.data.xipos[self._static]
-                   @ self.model.opt.gravity)
+        static = -(
+            self.model.body_mass[self._static]
+            @ self.data.xipos[self._static]
+            @ self.model.opt.gravity
+        )
         return self.data.energy[1], self.data.energy[0] - static
 
     def _pose(self, positions):
@@ -133,8 +138,14 @@ def _strip(robot):
             robot.remove(element)
             continue
         for part in list(element):
-            if part.tag in ('visual', 'collision', 'mimic', 'dynamics', 'safety_controller',
-                            'limit'):
+            if part.tag in (
+                'visual',
+                'collision',
+                'mimic',
+                'dynamics',
+                'safety_controller',
+                'limit',
+            ):
                 element.remove(part)
         if element.get('type') == 'revolute':
             element.set('type', 'continuous')  # a revolute joint without its limits
@@ -174,12 +185,17 @@ def _write(model, body, inertial):
         mass = float(inertial.find('mass').get('value'))
         get = inertial.find('inertia').get
         entry = [float(get(key)) for key in ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')]
-        moments, axes = np.linalg.eigh(np.array([entry[:3], [entry[1], entry[3], entry[4]],
-                                                 [entry[2], entry[4], entry[5]]]))
+        moments, axes = np.linalg.eigh(
+            np.array([entry[:3], [entry[1], entry[3], entry[4]], [entry[2], entry[4], entry[5]]])
+        )
         axes = axes * np.linalg.det(axes)
         origin = inertial.find('origin')
-        xyz, rpy = (np.array((origin.get(key, '0 0 0') if origin is not None else '0 0 0').split(),
-                             dtype=float) for key in ('xyz', 'rpy'))
+        xyz, rpy = (
+            np.array(
+                (origin.get(key, '0 0 0') if origin is not None else '0 0 0').split(), dtype=float
+            )
+            for key in ('xyz', 'rpy')
+        )
         position, axes = xyz, _rotation(rpy) @ axes
     model.body_mass[body], model.body_ipos[body] = mass, position
     model.body_inertia[body] = moments

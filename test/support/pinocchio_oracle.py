@@ -58,15 +58,17 @@ class PinocchioOracle:
         """Return kinetic and potential energy, J."""
         B, b = self.fold(list(names))
         x = self._configuration(B @ q + b)
-        return (pinocchio.computeKineticEnergy(self.model, self.data, x, B @ qd),
-                pinocchio.computePotentialEnergy(self.model, self.data, x))
+        return (
+            pinocchio.computeKineticEnergy(self.model, self.data, x, B @ qd),
+            pinocchio.computePotentialEnergy(self.model, self.data, x),
+        )
 
     def _configuration(self, positions):
         x = pinocchio.neutral(self.model)
         for joint in list(self.model.joints)[1:]:
             position = positions[joint.idx_v]
             if joint.nq == 2:  # Pinocchio keeps a continuous joint as cosine and sine
-                x[joint.idx_q:joint.idx_q + 2] = np.cos(position), np.sin(position)
+                x[joint.idx_q : joint.idx_q + 2] = np.cos(position), np.sin(position)
             else:
                 x[joint.idx_q] = position
         return x

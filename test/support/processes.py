@@ -31,14 +31,26 @@ class NodeProcess:
 
     def __init__(self, *remappings, parameters_file=None, options=(), module=None, **parameters):
         self.expects_traceback = False
-        arguments = [item for name, value in parameters.items()
-                     for item in ('-p', f'{name}:={value}')]
+        arguments = [
+            item for name, value in parameters.items() for item in ('-p', f'{name}:={value}')
+        ]
         if parameters_file:
             arguments += ['--params-file', str(parameters_file)]
         self.process = subprocess.Popen(
-            [sys.executable, '-m', module or self.module, *options, '--ros-args', *arguments,
-             *[item for rule in remappings for item in ('-r', rule)]],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ))
+            [
+                sys.executable,
+                '-m',
+                module or self.module,
+                *options,
+                '--ros-args',
+                *arguments,
+                *[item for rule in remappings for item in ('-r', rule)],
+            ],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env=dict(os.environ),
+        )
 
     def send(self, number):
         """Send a signal."""
@@ -84,23 +96,31 @@ class Client:
     def record_commands(self, topic='forward_effort_controller/commands'):
         """Listen to the command topic; `commands` holds (time, list of efforts)."""
         self.node.create_subscription(
-            Float64MultiArray, topic,
-            lambda message: self.commands.append((time.monotonic(), list(message.data))), 10)
-        self.node.create_subscription(OutputState, '/dynamics_node/state',
-                                      self.outputs.append, LATCHED)
+            Float64MultiArray,
+            topic,
+            lambda message: self.commands.append((time.monotonic(), list(message.data))),
+            10,
+        )
+        self.node.create_subscription(
+            OutputState, '/dynamics_node/state', self.outputs.append, LATCHED
+        )
 
     def listen(self, kind, topic, latched=False):
         """Return a list that grows by every message on a topic."""
         received = []
-        self.node.create_subscription(kind, topic, received.append,
-                                      LATCHED if latched else qos_profile_sensor_data)
+        self.node.create_subscription(
+            kind, topic, received.append, LATCHED if latched else qos_profile_sensor_data
+        )
         return received
 
     def publish(self, names, position, velocity=(), effort=()):
         """Publish one joint state, stamped now."""
-        message = JointState(name=list(names), position=[float(q) for q in position],
-                             velocity=[float(qd) for qd in velocity],
-                             effort=[float(tau) for tau in effort])
+        message = JointState(
+            name=list(names),
+            position=[float(q) for q in position],
+            velocity=[float(qd) for qd in velocity],
+            effort=[float(tau) for tau in effort],
+        )
         message.header.stamp = self.node.get_clock().now().to_msg()
         self.states.publish(message)
 
@@ -148,8 +168,14 @@ class Client:
         # Discovery has two sides: that we know the node's subscription does not mean that the
         # node knows us.
         self.until(self.states.get_subscription_count, action)
-        self.until(lambda: self.call(GetGravityTorque, '/dynamics_node/get_gravity_torque',
-                                     action=action).success, action)
+        self.until(
+            lambda: (
+                self.call(
+                    GetGravityTorque, '/dynamics_node/get_gravity_torque', action=action
+                ).success
+            ),
+            action,
+        )
 
     def enable(self, value, action=None):
         """Ask for output on or off."""

@@ -58,10 +58,14 @@ class PushedRobot:
     def motor(self, t, q, qd):
         """Return the efforts of the motors, shape (n,)."""
         w, phase = 2 * np.pi, 2 * np.pi * t + self._phase
-        wanted = self._amplitude * np.array([np.sin(phase), w * np.cos(phase),
-                                             -w * w * np.sin(phase)])
-        qdd = (wanted[2] + 2 * STIFFNESS * (wanted[1] - qd)
-               + STIFFNESS ** 2 * (self.start + wanted[0] - q))
+        wanted = self._amplitude * np.array(
+            [np.sin(phase), w * np.cos(phase), -w * w * np.sin(phase)]
+        )
+        qdd = (
+            wanted[2]
+            + 2 * STIFFNESS * (wanted[1] - qd)
+            + STIFFNESS**2 * (self.start + wanted[0] - q)
+        )
         return self.oracle.inverse_dynamics(self.names, q, qd, qdd) + self.friction(qd)
 
     def wrench_on_tip(self, q, wrench):
@@ -82,29 +86,42 @@ class PushedRobot:
         """
         n = self.n
         w, phase = 2 * np.pi, self._phase
-        state = np.concatenate([self.start + self._amplitude * np.sin(phase),
-                                self._amplitude * w * np.cos(phase), np.zeros(n)])
+        state = np.concatenate(
+            [
+                self.start + self._amplitude * np.sin(phase),
+                self._amplitude * w * np.cos(phase),
+                np.zeros(n),
+            ]
+        )
         rows = [state]
         for part, is_pushed in ((times[times <= begins], False), (times[times >= begins], True)):
             if len(part) < 2:
                 continue
 
             def derivative(t, x, is_pushed=is_pushed):
-                q, qd, r = x[:n], x[n:2 * n], x[2 * n:]
+                q, qd, r = x[:n], x[n : 2 * n], x[2 * n :]
                 outside = external(t, q) if is_pushed else np.zeros(n)
                 effort = self.motor(t, q, qd) - self.friction(qd) + outside
                 qdd = self.oracle.forward_dynamics(self.names, q, qd, effort)
                 return np.concatenate([qd, qdd, gain * (outside - r)])
 
-            solution = solve_ivp(derivative, part[[0, -1]], rows[-1], t_eval=part[1:],
-                                 method='DOP853', rtol=TOLERANCE, atol=TOLERANCE)
+            solution = solve_ivp(
+                derivative,
+                part[[0, -1]],
+                rows[-1],
+                t_eval=part[1:],
+                method='DOP853',
+                rtol=TOLERANCE,
+                atol=TOLERANCE,
+            )
             if not solution.success:
                 raise RuntimeError(f'the integration stopped: {solution.message}')
             rows.extend(solution.y.T)
         q, qd, lagged = np.split(np.array(rows), 3, axis=1)
         effort = np.array([self.motor(*row) for row in zip(times, q, qd, strict=True)])
-        outside = np.array([external(t, p) if t >= begins else np.zeros(n)
-                            for t, p in zip(times, q, strict=True)])
+        outside = np.array(
+            [external(t, p) if t >= begins else np.zeros(n) for t, p in zip(times, q, strict=True)]
+        )
         return Motion(times, q, qd, effort, outside, lagged)
 
 

@@ -37,19 +37,27 @@ def random_urdf(seed, joints=None, with_mimic=True, mass_scale=1.0, prismatic=0.
     """
     rng = np.random.default_rng(seed)
     joints = int(rng.integers(2, 9)) if joints is None else joints
-    elements = [_link('base', rng, mass_scale), _link('stand', rng, mass_scale),
-                _joint('mount', 'fixed', 'base', 'stand', rng)]
+    elements = [
+        _link('base', rng, mass_scale),
+        _link('stand', rng, mass_scale),
+        _joint('mount', 'fixed', 'base', 'stand', rng),
+    ]
     carriers = ['stand']
     independent, mimics = [], []
     for i in range(joints):
         parent = carriers[int(rng.integers(max(0, len(carriers) - 3), len(carriers)))]
-        kind = ('prismatic' if rng.random() < prismatic
-                else ('revolute', 'continuous')[int(rng.integers(2))])
+        kind = (
+            'prismatic'
+            if rng.random() < prismatic
+            else ('revolute', 'continuous')[int(rng.integers(2))]
+        )
         mimic = ''
         if with_mimic and len(independent) >= 2 and rng.random() < 0.25:
             leader = (mimics or independent)[-1] if rng.random() < 0.5 else independent[0]
-            mimic = (f'<mimic joint="{leader}" multiplier="{rng.normal():.17g}" '
-                     f'offset="{rng.normal() * 0.2:.17g}"/>')
+            mimic = (
+                f'<mimic joint="{leader}" multiplier="{rng.normal():.17g}" '
+                f'offset="{rng.normal() * 0.2:.17g}"/>'
+            )
             mimics.append(f'joint{i}')
         else:
             independent.append(f'joint{i}')
@@ -76,8 +84,10 @@ def _numbers(values):
 
 
 def _origin(rng):
-    return (f'<origin xyz="{_numbers(rng.normal(0.0, 0.3, 3))}" '
-            f'rpy="{_numbers(rng.uniform(-3.0, 3.0, 3))}"/>')
+    return (
+        f'<origin xyz="{_numbers(rng.normal(0.0, 0.3, 3))}" '
+        f'rpy="{_numbers(rng.uniform(-3.0, 3.0, 3))}"/>'
+    )
 
 
 def _link(name, rng, mass_scale, with_inertial=True):
@@ -90,11 +100,21 @@ def _link(name, rng, mass_scale, with_inertial=True):
     rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     tensor = rotation @ np.diag(about_axes) @ rotation.T
     tensor = 0.5 * (tensor + tensor.T)
-    entries = ' '.join(f'{key}="{tensor[i, j]:.17g}"' for key, i, j in (
-        ('ixx', 0, 0), ('ixy', 0, 1), ('ixz', 0, 2), ('iyy', 1, 1), ('iyz', 1, 2),
-        ('izz', 2, 2)))
-    return (f'<link name="{name}"><inertial>{_origin(rng)}<mass value="{mass:.17g}"/>'
-            f'<inertia {entries}/></inertial></link>')
+    entries = ' '.join(
+        f'{key}="{tensor[i, j]:.17g}"'
+        for key, i, j in (
+            ('ixx', 0, 0),
+            ('ixy', 0, 1),
+            ('ixz', 0, 2),
+            ('iyy', 1, 1),
+            ('iyz', 1, 2),
+            ('izz', 2, 2),
+        )
+    )
+    return (
+        f'<link name="{name}"><inertial>{_origin(rng)}<mass value="{mass:.17g}"/>'
+        f'<inertia {entries}/></inertial></link>'
+    )
 
 
 def _joint(name, kind, parent, child, rng, mimic=''):
@@ -103,5 +123,7 @@ def _joint(name, kind, parent, child, rng, mimic=''):
     # Drawn for every joint, so that a change of one property leaves all other numbers alone.
     axis_text = '' if kind == 'fixed' else f'<axis xyz="{_numbers(axis)}"/>'
     limit = '' if kind == 'fixed' else '<limit lower="-3" upper="3" effort="90" velocity="3"/>'
-    return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/>'
-            f'<child link="{child}"/>{_origin(rng)}{axis_text}{limit}{mimic}</joint>')
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/>'
+        f'<child link="{child}"/>{_origin(rng)}{axis_text}{limit}{mimic}</joint>'
+    )

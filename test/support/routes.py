@@ -64,18 +64,35 @@ class Routes:
         answers = {'library': _ask_library(self.model, q, qd, qdd, tau)}
         for name, judge in self.judges.items():
             answers[name] = Answer(
-                *judge.dynamics(names, q, qd), judge.inverse_dynamics(names, q, qd, qdd),
+                *judge.dynamics(names, q, qd),
+                judge.inverse_dynamics(names, q, qd, qdd),
                 None if scales.FD is None else judge.forward_dynamics(names, q, qd, tau),
-                *judge.energies(names, q, qd))
-        exact = Answer(terms.D, terms.C, terms.G, efforts, None if scales.FD is None else solve(
-            terms.D, tau - terms.C @ qd - terms.G), terms.kinetic, terms.potential)
+                *judge.energies(names, q, qd),
+            )
+        exact = Answer(
+            terms.D,
+            terms.C,
+            terms.G,
+            efforts,
+            None if scales.FD is None else solve(terms.D, tau - terms.C @ qd - terms.G),
+            terms.kinetic,
+            terms.potential,
+        )
         pairs = [('library', name) for name in self.judges] + [(name, 'exact') for name in answers]
-        plain = {} if scales.FD is None else {
-            name: relative_error(answer.FD, exact.FD, np.abs(exact.FD).max() / CANCELLED)
-            for name, answer in answers.items()}
+        plain = (
+            {}
+            if scales.FD is None
+            else {
+                name: relative_error(answer.FD, exact.FD, np.abs(exact.FD).max() / CANCELLED)
+                for name, answer in answers.items()
+            }
+        )
         answers['exact'] = exact
-        return Comparison({(a, b): _errors(answers[a], answers[b], scales, terms.height)
-                           for a, b in pairs}, plain, condition(D))
+        return Comparison(
+            {(a, b): _errors(answers[a], answers[b], scales, terms.height) for a, b in pairs},
+            plain,
+            condition(D),
+        )
 
 
 def worst_of(dicts):
@@ -93,17 +110,26 @@ def _ask_library(model, q, qd, qdd, tau):
         accelerations = model.forward_dynamics(q, qd, tau)
     except SingularMassMatrixError:
         accelerations = None
-    return Answer(*model.dynamics(q, qd), model.inverse_dynamics(q, qd, qdd), accelerations,
-                  model.kinetic_energy(q, qd), model.potential_energy(q))
+    return Answer(
+        *model.dynamics(q, qd),
+        model.inverse_dynamics(q, qd, qdd),
+        accelerations,
+        model.kinetic_energy(q, qd),
+        model.potential_energy(q),
+    )
 
 
 def _errors(actual, expected, scales, height):
-    errors = {name: relative_error(getattr(actual, name), getattr(expected, name),
-                                   getattr(scales, name)) for name in ('D', 'C', 'G', 'ID')}
+    errors = {
+        name: relative_error(getattr(actual, name), getattr(expected, name), getattr(scales, name))
+        for name in ('D', 'C', 'G', 'ID')
+    }
     if scales.FD is not None:
         # The library must answer wherever D is not singular.
         mine = np.nan if actual.FD is None else actual.FD
         errors['FD'] = relative_error(mine, expected.FD, scales.FD)
-    errors['energy'] = max(relative_error(actual.kinetic, expected.kinetic, 0.0),
-                           relative_error(actual.potential, expected.potential, height))
+    errors['energy'] = max(
+        relative_error(actual.kinetic, expected.kinetic, 0.0),
+        relative_error(actual.potential, expected.potential, height),
+    )
     return errors

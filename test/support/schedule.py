@@ -11,23 +11,42 @@ from xdist.scheduler import LoadScopeScheduling
 # Files whose tests start processes of their own: each test may run in any worker.
 _WITH_PROCESSES = 'test/ros/test_'
 # But for these, whose tests share them.
-_SHARING = {'test/ros/test_services.py', 'test/ros/test_setting_services.py',
-            'test/ros/test_trajectory_services.py', 'test/ros/test_faults_on_the_arm.py',
-            'test/ros/test_payload_on_the_arm.py', 'test/ros/test_external_torque_on_the_arm.py'}
+_SHARING = {
+    'test/ros/test_services.py',
+    'test/ros/test_setting_services.py',
+    'test/ros/test_trajectory_services.py',
+    'test/ros/test_faults_on_the_arm.py',
+    'test/ros/test_payload_on_the_arm.py',
+    'test/ros/test_external_torque_on_the_arm.py',
+}
 
 # Files that share what a process computes only once: see support/sweep.py.
-_TOGETHER = {f'test/{name}.py': 'sweep' for name in (
-    'dynamics/test_extreme_robots', 'dynamics/test_free_swing', 'dynamics/test_public_robots',
-    'test_accuracy_document')}
+_TOGETHER = {
+    f'test/{name}.py': 'sweep'
+    for name in (
+        'dynamics/test_extreme_robots',
+        'dynamics/test_free_swing',
+        'dynamics/test_public_robots',
+        'test_accuracy_document',
+    )
+}
 
 # What takes longest comes first: begun last, it would keep one worker busy while the others
 # have nothing left. A file that is missing here is no error, it only costs time.
-_FIRST = ('test/test_code_style.py', 'test/benchmarks/test_node_latency.py',
-          'test/ros/demo/test_demo.py', 'test/report/html/test_in_browser.py',
-          'test/test_benchmarks.py',
-          'test/dynamics/test_identities.py', 'sweep', 'test/ros/demo/test_simulated_robot.py',
-          'test/ros/test_services.py', 'test/dynamics/test_specialised_robots.py',
-          'test/dynamics/test_specialisation.py', 'test/kernels/test_jit.py')
+_FIRST = (
+    'test/test_code_style.py',
+    'test/benchmarks/test_node_latency.py',
+    'test/ros/demo/test_demo.py',
+    'test/report/html/test_in_browser.py',
+    'test/test_benchmarks.py',
+    'test/dynamics/test_identities.py',
+    'sweep',
+    'test/ros/demo/test_simulated_robot.py',
+    'test/ros/test_services.py',
+    'test/dynamics/test_specialised_robots.py',
+    'test/dynamics/test_specialisation.py',
+    'test/kernels/test_jit.py',
+)
 
 
 def unit(nodeid):

@@ -62,16 +62,21 @@ def row(name, text, model, states=STATES):
     routes = Routes(text, model)
     rng = np.random.default_rng(len(model.joint_names))
     results = [routes.compare(rng) for _ in range(states)]
-    return Row(name, len(model.joint_names),
-               len(model.tree.body_names) - len(model.joint_names),
-               {pair: worst_of(result.errors[pair] for result in results)
-                for pair in results[0].errors},
-               worst_of(result.plain for result in results),
-               max(result.condition for result in results), routes.judges['mujoco'].replaced)
+    return Row(
+        name,
+        len(model.joint_names),
+        len(model.tree.body_names) - len(model.joint_names),
+        {pair: worst_of(result.errors[pair] for result in results) for pair in results[0].errors},
+        worst_of(result.plain for result in results),
+        max(result.condition for result in results),
+        routes.judges['mujoco'].replaced,
+    )
 
 
 def sweep():
     """Return the rows of all public robots that are compared, and what is left out."""
     results = [compare(name) for name in public_robots()]
-    return ([result for result in results if isinstance(result, Row)],
-            [result for result in results if isinstance(result, LeftOut)])
+    return (
+        [result for result in results if isinstance(result, Row)],
+        [result for result in results if isinstance(result, LeftOut)],
+    )

@@ -34,11 +34,16 @@ def test_without_one_tests_are_skipped_with_what_to_install(no_browser):
         require_browser()
 
 
-@pytest.mark.parametrize('variable, value, match', [
-    ('DYNAMICS_NODE_BROWSER_REQUIRED', '1', 'install chromium'),
-    ('DYNAMICS_NODE_BROWSER', '/nowhere', "'/nowhere', which is no program")])
-def test_where_one_is_required_or_named_tests_fail(no_browser, monkeypatch, variable, value,
-                                                   match):
+@pytest.mark.parametrize(
+    'variable, value, match',
+    [
+        ('DYNAMICS_NODE_BROWSER_REQUIRED', '1', 'install chromium'),
+        ('DYNAMICS_NODE_BROWSER', '/nowhere', "'/nowhere', which is no program"),
+    ],
+)
+def test_where_one_is_required_or_named_tests_fail(
+    no_browser, monkeypatch, variable, value, match
+):
     monkeypatch.setenv(variable, value)
     with pytest.raises(pytest.fail.Exception, match=match):
         require_browser()

@@ -11,9 +11,16 @@ CODE = 'from support.domains import claim; print(claim())'
 
 def claimed(chosen):
     """Return the domain that another process claims, which ends then."""
-    return int(subprocess.run(
-        [sys.executable, '-c', CODE], cwd=ROBOTS.parents[1] / 'test', text=True, check=True,
-        env={'ROS_DOMAIN_ID': str(chosen)}, stdout=subprocess.PIPE).stdout)
+    return int(
+        subprocess.run(
+            [sys.executable, '-c', CODE],
+            cwd=ROBOTS.parents[1] / 'test',
+            text=True,
+            check=True,
+            env={'ROS_DOMAIN_ID': str(chosen)},
+            stdout=subprocess.PIPE,
+        ).stdout
+    )
 
 
 def test_every_claim_is_another_valid_domain_also_in_other_processes():

@@ -8,26 +8,37 @@ from dynamics_node.urdf.attributes import is_number
 import numpy as np
 import pytest
 
-ROBOT = ('<robot name="r"><link name="a"/><link name="b"><inertial><origin xyz="{place}"/>'
-         '<mass value="{mass}"/><inertia ixx="{inertia}" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
-         '</inertial></link><joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
-         '<axis xyz="0 0 1"/><limit lower="{lower}" upper="{upper}"/></joint></robot>')
+ROBOT = (
+    '<robot name="r"><link name="a"/><link name="b"><inertial><origin xyz="{place}"/>'
+    '<mass value="{mass}"/><inertia ixx="{inertia}" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+    '</inertial></link><joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
+    '<axis xyz="0 0 1"/><limit lower="{lower}" upper="{upper}"/></joint></robot>'
+)
 
 
 def read(place='0 0 0', mass='1', inertia='1', lower='-1', upper='1'):
     """Return a robot of two links, some of its numbers replaced."""
-    return read_urdf(ROBOT.format(place=place, mass=mass, inertia=inertia, lower=lower,
-                                  upper=upper))
+    return read_urdf(
+        ROBOT.format(place=place, mass=mass, inertia=inertia, lower=lower, upper=upper)
+    )
 
 
 DIGITS = '1' * 1_000_000
 
 
-@pytest.mark.parametrize('text', [
-    # A million characters in one attribute: each looked at a few times, not a million times.
-    DIGITS + 'x', '.' + DIGITS + 'x', '1.' * 500_000, '1e' + DIGITS + 'x', ' ' * 1_000_000 + 'x',
-    '+' * 1_000_000,
-], ids=['digits', 'fraction', 'points', 'exponent', 'blanks', 'signs'])
+@pytest.mark.parametrize(
+    'text',
+    [
+        # A million characters in one attribute: each looked at a few times, not a million times.
+        DIGITS + 'x',
+        '.' + DIGITS + 'x',
+        '1.' * 500_000,
+        '1e' + DIGITS + 'x',
+        ' ' * 1_000_000 + 'x',
+        '+' * 1_000_000,
+    ],
+    ids=['digits', 'fraction', 'points', 'exponent', 'blanks', 'signs'],
+)
 def test_a_long_text_is_judged_at_once(text):
     start = time.process_time()
     assert not is_number(text)
@@ -57,7 +68,8 @@ def test_numbers_larger_than_any_robot_has_are_refused():
     assert caught.value.problems == (
         "link 'b': <origin> xyz: expected at most 1e+30, got '0 0 -1e31'",
         "link 'b': <mass> value: expected at most 1e+30, got '1e300'",
-        "link 'b': <inertia> ixx: expected at most 1e+30, got '2e30'")
+        "link 'b': <inertia> ixx: expected at most 1e+30, got '2e30'",
+    )
 
 
 def test_a_position_limit_larger_than_any_robot_has_is_none():

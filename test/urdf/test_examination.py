@@ -15,12 +15,16 @@ def test_a_sound_robot_is_as_read():
     assert (described.root, described.warnings) == (expected.root, expected.warnings)
 
 
-@pytest.mark.parametrize('text, links, joints, unread', [
-    (arm().replace('mass value="2.5"', 'mass value="x"'), 7, 6, {'link2'}),
-    (arm().replace('revolute', 'spherical', 1), 7, 5, set()),
-    (arm().replace('<child link="link5"/>', '<child link="nobody"/>'), 7, 5, set()),
-    (arm().replace('<link name="link5">', '<link name="link4">'), 6, 4, set()),
-    (arm().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0"/>'), 7, 5, set())])
+@pytest.mark.parametrize(
+    'text, links, joints, unread',
+    [
+        (arm().replace('mass value="2.5"', 'mass value="x"'), 7, 6, {'link2'}),
+        (arm().replace('revolute', 'spherical', 1), 7, 5, set()),
+        (arm().replace('<child link="link5"/>', '<child link="nobody"/>'), 7, 5, set()),
+        (arm().replace('<link name="link5">', '<link name="link4">'), 6, 4, set()),
+        (arm().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0"/>'), 7, 5, set()),
+    ],
+)
 def test_parts_that_can_be_read_are_there(text, links, joints, unread):
     found = examine_urdf(text)
     with pytest.raises(RobotDescriptionError) as caught:
@@ -36,8 +40,9 @@ def test_wrong_numbers_of_a_whole_robot_leave_it_whole():
 
 
 def test_what_the_urdf_states_is_kept_beside_what_is_taken():
-    text = changed(arm(), 'joint2', axis=False,
-                   limit={'lower': 1, 'upper': -1, 'effort': 0, 'velocity': None})
+    text = changed(
+        arm(), 'joint2', axis=False, limit={'lower': 1, 'upper': -1, 'effort': 0, 'velocity': None}
+    )
     joint = examine_urdf(text).description.joints[1]
     assert (joint.stated.lower, joint.stated.upper, joint.stated.effort) == (1.0, -1.0, 0.0)
     assert joint.stated.velocity != joint.stated.velocity and not joint.stated.has_axis
@@ -45,7 +50,9 @@ def test_what_the_urdf_states_is_kept_beside_what_is_taken():
 
 
 def test_shapes_are_a_yes_or_no():
-    by_name = {link.name: link for link in examine_urdf(arm().replace(
-        'visual', 'collision', 2)).description.links}
+    by_name = {
+        link.name: link
+        for link in examine_urdf(arm().replace('visual', 'collision', 2)).description.links
+    }
     assert by_name['base'].has_shape and not by_name['base'].has_visual
     assert by_name['link1'].has_shape and by_name['link1'].has_visual

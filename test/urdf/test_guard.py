@@ -15,16 +15,25 @@ def many(text, count):
 ATTRIBUTES = ' '.join(f'a{i}=""' for i in range(400_000))
 
 
-@pytest.mark.parametrize('text, message', [
-    (many('<a/>', 1_200_000), 'it has 120000[0-9] tags, at most 200000 are accepted'),
-    (many('<joint/>', 600_000), 'it has 60000[0-9] tags, at most'),
-    (many('<joint/>', 1_001), 'it has more than 1000 joints'),
-    (many('<link/>', 1_000), 'it has more than 1000 links'),
-    (many(f'<a {ATTRIBUTES}/>', 1), 'it has 40000[0-9] attributes, at most 100000 are accepted'),
-    ('<' + 'x' * 4_000_000 + '/>', r'root element is <x{57}\.\.\.>, expected'),
-    ('<?xml version="1.0" encoding="' + 'x' * 4_000_000 + '"?><robot name="r"/>',
-     r"encoding is 'x{57}\.\.\.', expected"),
-], ids=['elements', 'tags of joints', 'joints', 'links', 'attributes', 'root', 'encoding'])
+@pytest.mark.parametrize(
+    'text, message',
+    [
+        (many('<a/>', 1_200_000), 'it has 120000[0-9] tags, at most 200000 are accepted'),
+        (many('<joint/>', 600_000), 'it has 60000[0-9] tags, at most'),
+        (many('<joint/>', 1_001), 'it has more than 1000 joints'),
+        (many('<link/>', 1_000), 'it has more than 1000 links'),
+        (
+            many(f'<a {ATTRIBUTES}/>', 1),
+            'it has 40000[0-9] attributes, at most 100000 are accepted',
+        ),
+        ('<' + 'x' * 4_000_000 + '/>', r'root element is <x{57}\.\.\.>, expected'),
+        (
+            '<?xml version="1.0" encoding="' + 'x' * 4_000_000 + '"?><robot name="r"/>',
+            r"encoding is 'x{57}\.\.\.', expected",
+        ),
+    ],
+    ids=['elements', 'tags of joints', 'joints', 'links', 'attributes', 'root', 'encoding'],
+)
 def test_too_much_of_anything_is_refused_at_once_and_in_few_words(text, message):
     start = time.process_time()
     with pytest.raises(RobotDescriptionError, match=message) as caught:
@@ -33,10 +42,17 @@ def test_too_much_of_anything_is_refused_at_once_and_in_few_words(text, message)
     assert len(str(caught.value)) < 300
 
 
-@pytest.mark.parametrize('text', [
-    many('<a/>', 199_000), many('<a b=""/>', 99_000), many('&lt;', 1_200_000),
-    many('<!-->-->', 190_000), many('x', 4_900_000),
-], ids=['elements', 'attributes', 'references', 'comments', 'text'])
+@pytest.mark.parametrize(
+    'text',
+    [
+        many('<a/>', 199_000),
+        many('<a b=""/>', 99_000),
+        many('&lt;', 1_200_000),
+        many('<!-->-->', 190_000),
+        many('x', 4_900_000),
+    ],
+    ids=['elements', 'attributes', 'references', 'comments', 'text'],
+)
 def test_as_much_as_is_accepted_is_read_within_a_second(text):
     start = time.process_time()
     assert len(read_urdf(text.encode()).links) == 1

@@ -10,15 +10,19 @@ import numpy as np
 import pytest
 from support.robots import random_urdf
 
-INERTIAL = ('<inertial><origin xyz="0 0 0.1" rpy="0 0 0"/><mass value="1"/>'
-            '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>')
+INERTIAL = (
+    '<inertial><origin xyz="0 0 0.1" rpy="0 0 0"/><mass value="1"/>'
+    '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+)
 
 
 def two_links(joint='<axis xyz="0 0 1"/>', kind='revolute', inertial=INERTIAL, more=''):
     """Return a robot with one joint; parts can be replaced."""
-    return (f'<robot name="r"><link name="a"/><link name="b">{inertial}</link>'
-            f'<joint name="j" type="{kind}"><parent link="a"/><child link="b"/>{joint}</joint>'
-            f'{more}</robot>')
+    return (
+        f'<robot name="r"><link name="a"/><link name="b">{inertial}</link>'
+        f'<joint name="j" type="{kind}"><parent link="a"/><child link="b"/>{joint}</joint>'
+        f'{more}</robot>'
+    )
 
 
 def problems(text):
@@ -31,16 +35,20 @@ def problems(text):
 
 
 def test_values_arrive_in_plain_data():
-    robot = read_urdf(two_links(
-        '<origin xyz="1 2 3" rpy="0 0 1.5707963267948966"/><axis xyz="0 0 1"/>'
-        '<limit lower="-1" upper="2" effort="30" velocity="4"/>'
-        '<dynamics damping="0.5" friction="0.1"/>'))
+    robot = read_urdf(
+        two_links(
+            '<origin xyz="1 2 3" rpy="0 0 1.5707963267948966"/><axis xyz="0 0 1"/>'
+            '<limit lower="-1" upper="2" effort="30" velocity="4"/>'
+            '<dynamics damping="0.5" friction="0.1"/>'
+        )
+    )
     joint, link = robot.joints[0], robot.links[1]
     assert (robot.name, robot.root, joint.kind) == ('r', 'a', 'revolute')
     assert (joint.lower, joint.upper, joint.effort, joint.velocity) == (-1, 2, 30, 4)
     assert (joint.damping, joint.friction) == (0.5, 0.1)
-    np.testing.assert_allclose(joint.placement, [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3],
-                                                 [0, 0, 0, 1]], atol=1e-15)
+    np.testing.assert_allclose(
+        joint.placement, [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]], atol=1e-15
+    )
     assert link.inertial.mass == 1.0
     np.testing.assert_array_equal(link.inertial.placement[:3, 3], [0, 0, 0.1])
     assert robot.links[0].inertial is None
@@ -48,10 +56,17 @@ def test_values_arrive_in_plain_data():
 
 
 def test_meshes_are_never_looked_at(tmp_path):
-    mesh = ('<visual><geometry><mesh filename="{}"/></geometry></visual>'
-            '<collision><geometry><mesh filename="{}"/></geometry></collision>')
-    for address in ('package://nowhere/a.stl', 'file:///dev/zero', 'http://localhost:1/a.dae',
-                    '../../a.stl', str(tmp_path)):
+    mesh = (
+        '<visual><geometry><mesh filename="{}"/></geometry></visual>'
+        '<collision><geometry><mesh filename="{}"/></geometry></collision>'
+    )
+    for address in (
+        'package://nowhere/a.stl',
+        'file:///dev/zero',
+        'http://localhost:1/a.dae',
+        '../../a.stl',
+        str(tmp_path),
+    ):
         text = two_links(inertial=INERTIAL + mesh.format(address, address))
         assert read_urdf(text).links[1].inertial.mass == 1.0
 
@@ -62,55 +77,84 @@ def test_nothing_is_opened_whatever_the_addresses_say():
     parts = ''.join(
         f'<visual><geometry>{mesh.format(address)}</geometry></visual><collision><geometry>'
         f'{mesh.format(address)}</geometry></collision><material name="{i}"><texture '
-        f'filename="{address}"/></material>' for i, address in enumerate((
-            'file:///etc/hostname', '/etc/hostname', '../a.stl', 'package://a/b.dae',
-            'http://localhost:1/a.dae', 'ftp://localhost/a.obj')))
+        f'filename="{address}"/></material>'
+        for i, address in enumerate(
+            (
+                'file:///etc/hostname',
+                '/etc/hostname',
+                '../a.stl',
+                'package://a/b.dae',
+                'http://localhost:1/a.dae',
+                'ftp://localhost/a.obj',
+            )
+        )
+    )
     text = two_links(inertial=INERTIAL + parts, more=parts).encode()
-    run = subprocess.run([sys.executable, '-c', (
-        'from dynamics_node.urdf import read_urdf\n'
-        'from fuzz.audit import nothing_opened\n'
-        f'text = {text!r}\n'
-        'read_urdf(text)\n'
-        'with nothing_opened():\n'
-        '    assert read_urdf(text).links[1].inertial.mass == 1.0\n')],
-        capture_output=True, text=True, cwd=Path(__file__).parents[1], check=False)
+    run = subprocess.run(
+        [
+            sys.executable,
+            '-c',
+            (
+                'from dynamics_node.urdf import read_urdf\n'
+                'from fuzz.audit import nothing_opened\n'
+                f'text = {text!r}\n'
+                'read_urdf(text)\n'
+                'with nothing_opened():\n'
+                '    assert read_urdf(text).links[1].inertial.mass == 1.0\n'
+            ),
+        ],
+        capture_output=True,
+        text=True,
+        cwd=Path(__file__).parents[1],
+        check=False,
+    )
     assert run.returncode == 0, run.stderr
 
 
 def test_what_dynamics_does_not_need_does_not_matter():
-    assert read_urdf(two_links(more='<gazebo><x y="z"/></gazebo><transmission/>'
-                                    '<material name="m"/><ros2_control><joint name="q"/>'
-                                    '</ros2_control><!-- a comment -->'))
+    assert read_urdf(
+        two_links(
+            more='<gazebo><x y="z"/></gazebo><transmission/>'
+            '<material name="m"/><ros2_control><joint name="q"/>'
+            '</ros2_control><!-- a comment -->'
+        )
+    )
 
 
 def test_what_belongs_to_other_name_spaces_reaches_no_other_parser(caplog):
     # xml:id must be a name, and lxml reads the text once more, its way, where it is none.
-    text = two_links('<axis xyz="0 0 1" xml:id="1 2"/><x:axis xmlns:x="a b" xyz="1 0 0"/>',
-                     inertial=INERTIAL.replace('<mass', '<mass xml:id="3 4"')
-                     + '<visual xml:id="5 6"/>')
+    text = two_links(
+        '<axis xyz="0 0 1" xml:id="1 2"/><x:axis xmlns:x="a b" xyz="1 0 0"/>',
+        inertial=INERTIAL.replace('<mass', '<mass xml:id="3 4"') + '<visual xml:id="5 6"/>',
+    )
     np.testing.assert_array_equal(read_urdf(text).joints[0].axis, [0, 0, 1])
     assert caplog.text == ''
 
 
-@pytest.mark.parametrize('text, message', [
-    ('', 'it is empty'),
-    ('   \n ', 'it is empty'),
-    (b'', 'it is empty'),
-    (b' \n', 'it is empty'),
-    ('<robot><link', 'it is not XML: .*line 1'),
-    ('<robot>\n<link>\n</robot>', 'it is not XML: mismatched tag, line 3'),
-    ('<html/>', 'root element is <html>, expected <robot>'),
-    ('<!DOCTYPE robot [<!ENTITY a "b">]><robot name="r"/>', 'it has a DOCTYPE'),
-    ('<robot name="r">' + '<a>' * 40 + '</a>' * 40 + '</robot>', 'nested more than 32 deep'),
-    ('<robot name="r">' + ''.join(f'<link name="{i}"/>' for i in range(1001)) + '</robot>',
-     'more than 1000 links'),
-    ('<robot name="r">' + ' ' * 5_000_001 + '</robot>', 'at most 5000000 are accepted'),
-    (b'<robot name="\xff"/>', 'it is not UTF-8 text: byte 13'),
-    ('<?xml version="1.0" encoding="utf-16"?><robot name="r"/>', "its encoding is 'utf-16'"),
-    ('<robot name="\ud800"/>', 'it is not UTF-8'),
-    ('<robot name="r"/>', 'it has no <link>'),
-    ('<robot name="r">&undefined;</robot>', 'it is not XML: undefined entity'),
-])
+@pytest.mark.parametrize(
+    'text, message',
+    [
+        ('', 'it is empty'),
+        ('   \n ', 'it is empty'),
+        (b'', 'it is empty'),
+        (b' \n', 'it is empty'),
+        ('<robot><link', 'it is not XML: .*line 1'),
+        ('<robot>\n<link>\n</robot>', 'it is not XML: mismatched tag, line 3'),
+        ('<html/>', 'root element is <html>, expected <robot>'),
+        ('<!DOCTYPE robot [<!ENTITY a "b">]><robot name="r"/>', 'it has a DOCTYPE'),
+        ('<robot name="r">' + '<a>' * 40 + '</a>' * 40 + '</robot>', 'nested more than 32 deep'),
+        (
+            '<robot name="r">' + ''.join(f'<link name="{i}"/>' for i in range(1001)) + '</robot>',
+            'more than 1000 links',
+        ),
+        ('<robot name="r">' + ' ' * 5_000_001 + '</robot>', 'at most 5000000 are accepted'),
+        (b'<robot name="\xff"/>', 'it is not UTF-8 text: byte 13'),
+        ('<?xml version="1.0" encoding="utf-16"?><robot name="r"/>', "its encoding is 'utf-16'"),
+        ('<robot name="\ud800"/>', 'it is not UTF-8'),
+        ('<robot name="r"/>', 'it has no <link>'),
+        ('<robot name="r">&undefined;</robot>', 'it is not XML: undefined entity'),
+    ],
+)
 def test_hopeless_text_is_refused_before_parsing(text, message):
     with pytest.raises(RobotDescriptionError, match=message):
         read_urdf(text)
@@ -158,36 +202,53 @@ def test_all_problems_are_listed_at_once():
         '<robot name="r"><link name="a"/><link name="a"/><link/>'
         '<link name="b"><inertial><mass value="x"/></inertial></link>'
         '<joint name="j" type="floating"><parent link="a"/><child link="nowhere"/></joint>'
-        '<joint name="k" type="spherical"><child link="b"/></joint></robot>')
-    for text in ("link 'a' is defined 2 times", 'a <link> has no name',
-                 "joint 'j': type floating is not supported", "child link 'nowhere' does not",
-                 "joint 'k': type 'spherical' is unknown", '<parent link="..."/> is missing',
-                 "link 'b': <mass> value: expected a finite number, got 'x'",
-                 "link 'b': <inertial> has no <inertia>"):
+        '<joint name="k" type="spherical"><child link="b"/></joint></robot>'
+    )
+    for text in (
+        "link 'a' is defined 2 times",
+        'a <link> has no name',
+        "joint 'j': type floating is not supported",
+        "child link 'nowhere' does not",
+        "joint 'k': type 'spherical' is unknown",
+        '<parent link="..."/> is missing',
+        "link 'b': <mass> value: expected a finite number, got 'x'",
+        "link 'b': <inertial> has no <inertia>",
+    ):
         assert any(text in problem for problem in found), text
 
 
 @pytest.mark.parametrize('kind', ['floating', 'planar'])
 def test_joints_with_several_axes_are_refused_by_name(kind):
     [problem] = problems(two_links(kind=kind))
-    assert problem == (f"joint 'j': type {kind} is not supported; use one of revolute, "
-                       'continuous, prismatic, fixed')
+    assert problem == (
+        f"joint 'j': type {kind} is not supported; use one of revolute, "
+        'continuous, prismatic, fixed'
+    )
 
 
 def link_pairs(*pairs):
     """Return a robot with fixed joints between named links."""
     names = dict.fromkeys(name for pair in pairs for name in pair)
-    return ('<robot name="r">' + ''.join(f'<link name="{name}"/>' for name in names) + ''.join(
-        f'<joint name="j{i}" type="fixed"><parent link="{a}"/><child link="{b}"/></joint>'
-        for i, (a, b) in enumerate(pairs)) + '</robot>')
+    return (
+        '<robot name="r">'
+        + ''.join(f'<link name="{name}"/>' for name in names)
+        + ''.join(
+            f'<joint name="j{i}" type="fixed"><parent link="{a}"/><child link="{b}"/></joint>'
+            for i, (a, b) in enumerate(pairs)
+        )
+        + '</robot>'
+    )
 
 
-@pytest.mark.parametrize('text, message', [
-    (link_pairs(('a', 'b'), ('c', 'd')), "it has 2 root links, must be one: 'a', 'c'"),
-    (link_pairs(('a', 'b'), ('b', 'c'), ('c', 'a')), "form a cycle: 'b' -> 'a' -> 'c' -> 'b'"),
-    (link_pairs(('a', 'c'), ('b', 'c')), "link 'c' is the child of 2 joints"),
-    (link_pairs(('r', 'x'), ('a', 'b'), ('b', 'a')), 'form a cycle'),
-])
+@pytest.mark.parametrize(
+    'text, message',
+    [
+        (link_pairs(('a', 'b'), ('c', 'd')), "it has 2 root links, must be one: 'a', 'c'"),
+        (link_pairs(('a', 'b'), ('b', 'c'), ('c', 'a')), "form a cycle: 'b' -> 'a' -> 'c' -> 'b'"),
+        (link_pairs(('a', 'c'), ('b', 'c')), "link 'c' is the child of 2 joints"),
+        (link_pairs(('r', 'x'), ('a', 'b'), ('b', 'a')), 'form a cycle'),
+    ],
+)
 def test_what_is_not_one_tree_is_refused(text, message):
     assert any(message in problem for problem in problems(text))
 
@@ -198,16 +259,21 @@ def mimics(**leaders):
     for i, (name, leader) in enumerate(leaders.items()):
         parent = 'base' if i == 0 else f'link{i - 1}'
         mimic = f'<mimic joint="{leader}" multiplier="2"/>' if leader else ''
-        parts.append(f'<link name="link{i}"/><joint name="{name}" type="revolute">'
-                     f'<parent link="{parent}"/><child link="link{i}"/>{mimic}</joint>')
+        parts.append(
+            f'<link name="link{i}"/><joint name="{name}" type="revolute">'
+            f'<parent link="{parent}"/><child link="link{i}"/>{mimic}</joint>'
+        )
     return '<robot name="r">' + ''.join(parts) + '</robot>'
 
 
-@pytest.mark.parametrize('text, message', [
-    (mimics(j='', k='elbow'), "joint 'k': mimics 'elbow', which is not a movable joint"),
-    (mimics(j='k', k='j'), "mimic joints form a cycle: 'j' -> 'k' -> 'j'"),
-    (mimics(j='j'), "mimic joints form a cycle: 'j' -> 'j'"),
-])
+@pytest.mark.parametrize(
+    'text, message',
+    [
+        (mimics(j='', k='elbow'), "joint 'k': mimics 'elbow', which is not a movable joint"),
+        (mimics(j='k', k='j'), "mimic joints form a cycle: 'j' -> 'k' -> 'j'"),
+        (mimics(j='j'), "mimic joints form a cycle: 'j' -> 'j'"),
+    ],
+)
 def test_mimic_joints_must_lead_somewhere(text, message):
     assert message in problems(text)
 
@@ -231,15 +297,20 @@ def test_axis_is_normalised_or_defaulted_with_a_warning_and_never_zero():
 
 def with_diagonal(ixx, iyy, izz, mass=1.0):
     """Return a robot whose moving link has given principal moments."""
-    return two_links(inertial=(
-        f'<inertial><mass value="{mass}"/><inertia ixx="{ixx}" ixy="0" ixz="0" iyy="{iyy}" '
-        f'iyz="0" izz="{izz}"/></inertial>'))
+    return two_links(
+        inertial=(
+            f'<inertial><mass value="{mass}"/><inertia ixx="{ixx}" ixy="0" ixz="0" iyy="{iyy}" '
+            f'iyz="0" izz="{izz}"/></inertial>'
+        )
+    )
 
 
 def test_impossible_inertia_is_refused_and_suspicious_inertia_is_warned_about():
     [problem] = problems(with_diagonal(-0.1, 1, 1))
-    assert problem == ("link 'b': inertia is not physical: smallest principal moment of inertia "
-                       'is -0.1 kg m^2, must be >= 0')
+    assert problem == (
+        "link 'b': inertia is not physical: smallest principal moment of inertia "
+        'is -0.1 kg m^2, must be >= 0'
+    )
     [problem] = problems(with_diagonal(1, 1, 1, mass=-2))
     assert problem == "link 'b': mass is -2 kg, must be >= 0"
     [warning] = read_urdf(with_diagonal(3, 1, 1)).warnings
@@ -260,8 +331,10 @@ def test_impossible_inertia_that_no_joint_moves_is_only_suspicious():
     assert 'smallest principal moment' in warning
 
 
-@pytest.mark.parametrize('limit', ['', '<limit/>', '<limit effort="0" velocity="-1"/>',
-                                   '<limit effort="inf" velocity="nan"/>'])
+@pytest.mark.parametrize(
+    'limit',
+    ['', '<limit/>', '<limit effort="0" velocity="-1"/>', '<limit effort="inf" velocity="nan"/>'],
+)
 def test_unknown_effort_and_velocity_limits_are_nan(limit):
     joint = read_urdf(two_links('<axis xyz="0 0 1"/>' + limit, kind='continuous')).joints[0]
     assert np.isnan([joint.effort, joint.velocity]).all()
@@ -282,27 +355,48 @@ def test_a_description_comes_from_a_path_with_spaces(tmp_path):
 
 
 def test_what_was_forgotten_to_expand_is_refused():
-    [problem] = problems('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-                         '<xacro:include filename="a"/><link name="a"/></robot>')
+    [problem] = problems(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        '<xacro:include filename="a"/><link name="a"/></robot>'
+    )
     assert 'contains xacro elements: expand it first' in problem
     [problem] = problems('<robot name="r"><xacro:include filename="a"/><link name="a"/></robot>')
     assert 'contains xacro elements: expand it first' in problem
-    [problem] = problems('<robot name="r" xmlns:x="http://www.ros.org/wiki/xacro">'
-                         '<link name="a"><x:if value="1"/></link></robot>')
+    [problem] = problems(
+        '<robot name="r" xmlns:x="http://www.ros.org/wiki/xacro">'
+        '<link name="a"><x:if value="1"/></link></robot>'
+    )
     assert 'contains xacro elements: expand it first' in problem
     [problem] = problems(two_links('<axis xyz="0 0 1"/><limit effort="${e}" velocity="1"/>'))
-    assert problem == ("joint 'j': <limit> effort: expected a number, got '${e}'; a xacro file "
-                       'must be expanded first')
+    assert problem == (
+        "joint 'j': <limit> effort: expected a number, got '${e}'; a xacro file "
+        'must be expanded first'
+    )
     [problem] = problems(two_links('<axis xyz="0 $(arg y) 1"/>'))
     assert problem.endswith("got '0 $(arg y) 1'; a xacro file must be expanded first")
 
 
-@pytest.mark.parametrize('attribute', ['drake:acceleration="2.5"', 'a:b:c="${x}"', ':="1"',
-                                       'drake:effort="nan" drake:lower="9"', 'xmlns:xacro="x"',
-                                       'xml:effort="7"'])
-@pytest.mark.parametrize('element', ['', '<drake:collision_filter_group name="g"><drake:member '
-                                     'link="a"/></drake:collision_filter_group>',
-                                     '<drake:link name="a"/><drake:joint/>', '<:/>'])
+@pytest.mark.parametrize(
+    'attribute',
+    [
+        'drake:acceleration="2.5"',
+        'a:b:c="${x}"',
+        ':="1"',
+        'drake:effort="nan" drake:lower="9"',
+        'xmlns:xacro="x"',
+        'xml:effort="7"',
+    ],
+)
+@pytest.mark.parametrize(
+    'element',
+    [
+        '',
+        '<drake:collision_filter_group name="g"><drake:member '
+        'link="a"/></drake:collision_filter_group>',
+        '<drake:link name="a"/><drake:joint/>',
+        '<:/>',
+    ],
+)
 def test_prefixes_that_nothing_declares_are_left_out_as_urdfdom_does(attribute, element):
     limit = '<limit lower="-1" upper="2" effort="30" velocity="2"/>'
     plain = two_links('<axis xyz="0 0 1"/>' + limit)
@@ -320,12 +414,18 @@ def test_a_default_name_space_does_not_hide_the_robot():
     assert len(read_urdf(text).joints) == 1
 
 
-@pytest.mark.parametrize('text', [
-    '<robot name="r"><a:b></b:a><link name="a"/></robot>', '<robot name="r" a:b="1" a:b="2"/>',
-    '<robot name="r"><link name="a" drake:x=1/></robot>', '<a:robot name="r"/>',
-    '<robot name="r"><link name="a"/><a:b>' + '<c:d>' * 40 + '</c:d>' * 40 + '</a:b></robot>',
-    '<robot name="r"><link name="a" b:c="&d;"/></robot>',
-    '<!DOCTYPE r [<!ATTLIST link a:b CDATA "1">]><robot name="r"><link name="a"/></robot>'])
+@pytest.mark.parametrize(
+    'text',
+    [
+        '<robot name="r"><a:b></b:a><link name="a"/></robot>',
+        '<robot name="r" a:b="1" a:b="2"/>',
+        '<robot name="r"><link name="a" drake:x=1/></robot>',
+        '<a:robot name="r"/>',
+        '<robot name="r"><link name="a"/><a:b>' + '<c:d>' * 40 + '</c:d>' * 40 + '</a:b></robot>',
+        '<robot name="r"><link name="a" b:c="&d;"/></robot>',
+        '<!DOCTYPE r [<!ATTLIST link a:b CDATA "1">]><robot name="r"><link name="a"/></robot>',
+    ],
+)
 def test_what_is_no_xml_or_too_deep_is_refused_with_prefixes_too(text):
     assert len(problems(text)) == 1
 

@@ -19,5 +19,13 @@ from .background import start
 from .call import is_supported, make_callable
 from .robot_code import are_ordinary, from_disk, is_wanted, make, RobotCode
 
-__all__ = ['RobotCode', 'are_ordinary', 'from_disk', 'is_supported', 'is_wanted', 'make',
-           'make_callable', 'start']
+__all__ = [
+    'RobotCode',
+    'are_ordinary',
+    'from_disk',
+    'is_supported',
+    'is_wanted',
+    'make',
+    'make_callable',
+    'start',
+]

@@ -61,11 +61,17 @@ def start(structure, numbers, any_inertia=False):
         places = os.pathsep.join(place or str(Path.cwd()) for place in sys.path)
         environment = dict(os.environ, PYTHONPATH=places, PYTHONSAFEPATH='1')
         process = subprocess.Popen(
-            [sys.executable, '-m', __name__], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL, env=environment, start_new_session=True)
+            [sys.executable, '-m', __name__],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env=environment,
+            start_new_session=True,
+        )
         _processes[name] = process
-        np.savez(buffer := io.BytesIO(), structure=structure, numbers=numbers,
-                 any_inertia=any_inertia)
+        np.savez(
+            buffer := io.BytesIO(), structure=structure, numbers=numbers, any_inertia=any_inertia
+        )
         assert process.stdin is not None
         with contextlib.suppress(BrokenPipeError), process.stdin as stream:
             stream.write(buffer.getvalue())

@@ -34,18 +34,28 @@ from .sine import LARGEST_ANGLE
 _REFERENCES, _TYPE = 0, 8
 _DATA, _DIMENSION_COUNT, _DIMENSIONS, _DESCRIPTION, _FLAGS, _WEAK = 16, 24, 32, 56, 64, 72
 _CONTIGUOUS_AND_ALIGNED = 0x101
-_OWN_PLAIN = 0x505              # The same, owner of its data, and writeable.
-_FLOAT64 = 12                   # NPY_DOUBLE
-_METHOD_FLAGS = 0x80 | 0x02     # METH_FASTCALL | METH_KEYWORDS
-_PYARRAY_NEW = 93               # Place in numpy's table of C functions.
+_OWN_PLAIN = 0x505  # The same, owner of its data, and writeable.
+_FLOAT64 = 12  # NPY_DOUBLE
+_METHOD_FLAGS = 0x80 | 0x02  # METH_FASTCALL | METH_KEYWORDS
+_PYARRAY_NEW = 93  # Place in numpy's table of C functions.
 
 # What is larger is left to the general kernel, with NaN and infinity.
 LARGEST_NUMBER = 1e100
 
 # Slots of the context, 8 bytes each: addresses of Python's and numpy's objects and functions.
-_SLOTS = ('fallback', 'array_type', 'float64', 'terms_type', 'new_array', 'new_object',
-          'set_item', 'release', 'call', 'numbers')
-_KEPT = len(_SLOTS)             # From here: answers, each followed by its arrays.
+_SLOTS = (
+    'fallback',
+    'array_type',
+    'float64',
+    'terms_type',
+    'new_array',
+    'new_object',
+    'set_item',
+    'release',
+    'call',
+    'numbers',
+)
+_KEPT = len(_SLOTS)  # From here: answers, each followed by its arrays.
 # A loop that holds the last answer, and the one before, still finds a free one.
 _ANSWERS = 4
 
@@ -71,9 +81,15 @@ def entry_function(quantity):
     entry.make_new()
     entry.compute()
     entry.fall_back()
-    return '\n'.join([
-        f'define ptr @{quantity.name}_call(ptr %self, ptr %arguments, i64 %count, ptr %keywords) '
-        '{', 'entry:', *entry.code.lines, '}'])
+    return '\n'.join(
+        [
+            f'define ptr @{quantity.name}_call(ptr %self, ptr %arguments, i64 %count, ptr '
+            '%keywords) {',
+            'entry:',
+            *entry.code.lines,
+            '}',
+        ]
+    )
 
 
 class _Entry:
@@ -86,8 +102,9 @@ class _Entry:
         self.data = []
         self._labels = 0
         # Room on the stack is taken first, so that it is taken once.
-        self.shapes = [self.code.line(f'alloca [{output.ndim} x i64]')
-                       for output in quantity.outputs]
+        self.shapes = [
+            self.code.line(f'alloca [{output.ndim} x i64]') for output in quantity.outputs
+        ]
         self.out = [self.code.line('alloca ptr') for _ in quantity.outputs]
         self.answer = self.code.line('alloca ptr')
         self.context = self.load('ptr', '%self', _DATA)
@@ -117,24 +134,41 @@ class _Entry:
 
     def check_arguments(self):
         quantity = self.quantity
-        self.demand(self.all_of([
-            self.equal('i64', '%count', len(quantity.inputs)),
-            self.equal('ptr', '%keywords', 'null')]))
+        self.demand(
+            self.all_of(
+                [
+                    self.equal('i64', '%count', len(quantity.inputs)),
+                    self.equal('ptr', '%keywords', 'null'),
+                ]
+            )
+        )
         array_type, float64 = self.slot('array_type'), self.slot('float64')
         for index in range(len(quantity.inputs)):
             argument = self.load('ptr', '%arguments', 8 * index)
             self.demand(self.equal('ptr', self.load('ptr', argument, _TYPE), array_type))
             flags = self.code.line(
-                f'and i32 {self.load("i32", argument, _FLAGS)}, {_CONTIGUOUS_AND_ALIGNED}')
-            self.demand(self.all_of([
-                self.equal('ptr', self.load('ptr', argument, _DESCRIPTION), float64),
-                self.equal('i32', self.load('i32', argument, _DIMENSION_COUNT), 1),
-                self.equal('i32', flags, _CONTIGUOUS_AND_ALIGNED)]))
+                f'and i32 {self.load("i32", argument, _FLAGS)}, {_CONTIGUOUS_AND_ALIGNED}'
+            )
+            self.demand(
+                self.all_of(
+                    [
+                        self.equal('ptr', self.load('ptr', argument, _DESCRIPTION), float64),
+                        self.equal('i32', self.load('i32', argument, _DIMENSION_COUNT), 1),
+                        self.equal('i32', flags, _CONTIGUOUS_AND_ALIGNED),
+                    ]
+                )
+            )
             length = self.load('i64', self.load('ptr', argument, _DIMENSIONS), 0)
             self.demand(self.equal('i64', length, quantity.joint_count))
             self.data.append(self.load('ptr', argument, _DATA))
-        self.demand(self.all_of([self._is_ordinary(name, data) for name, data
-                                 in zip(quantity.inputs, self.data, strict=True)]))
+        self.demand(
+            self.all_of(
+                [
+                    self._is_ordinary(name, data)
+                    for name, data in zip(quantity.inputs, self.data, strict=True)
+                ]
+            )
+        )
 
     def _is_ordinary(self, name, data):
         # A comparison with NaN does not hold either.
@@ -173,31 +207,40 @@ class _Entry:
         # Whoever had it may have changed its shape, type or flags, or still watch it.
         flags = self.code.line(f'and i32 {self.load("i32", array, _FLAGS)}, {_OWN_PLAIN}')
         dimensions = self.load('ptr', array, _DIMENSIONS)
-        return self.all_of([
-            self.equal('i32', flags, _OWN_PLAIN),
-            self.equal('ptr', self.load('ptr', array, _WEAK), 'null'),
-            self.equal('ptr', self.load('ptr', array, _DESCRIPTION), self.slot('float64')),
-            self.equal('i32', self.load('i32', array, _DIMENSION_COUNT), len(shape)),
-            *(self.equal('i64', self.load('i64', dimensions, 8 * axis), length)
-              for axis, length in enumerate(shape))])
+        return self.all_of(
+            [
+                self.equal('i32', flags, _OWN_PLAIN),
+                self.equal('ptr', self.load('ptr', array, _WEAK), 'null'),
+                self.equal('ptr', self.load('ptr', array, _DESCRIPTION), self.slot('float64')),
+                self.equal('i32', self.load('i32', array, _DIMENSION_COUNT), len(shape)),
+                *(
+                    self.equal('i64', self.load('i64', dimensions, 8 * axis), length)
+                    for axis, length in enumerate(shape)
+                ),
+            ]
+        )
 
     def make_new(self):
         code = self.code
         array_type, new_array = self.slot('array_type'), self.slot('new_array')
-        for index, (shape, output) in enumerate(zip(self.shapes, self.quantity.outputs,
-                                                    strict=True)):
+        for index, (shape, output) in enumerate(
+            zip(self.shapes, self.quantity.outputs, strict=True)
+        ):
             for axis, length in enumerate(output.shape):
                 code.do(f'store i64 {length}, ptr {code.address(shape, axis)}')
             array = code.line(
                 f'call ptr {new_array}(ptr {array_type}, i32 {output.ndim}, ptr {shape}, '
-                f'i32 {_FLOAT64}, ptr null, ptr null, i32 0, i32 0, ptr null)')
+                f'i32 {_FLOAT64}, ptr null, ptr null, i32 0, i32 0, ptr null)'
+            )
             self._stop_without(array)
             code.do(f'store ptr {self.load("ptr", array, _DATA)}, ptr {self.out[index]}')
             self.arrays.append(array)
         answer = self.arrays[0]
         if len(self.arrays) > 1:
-            answer = code.line(f'call ptr {self.slot("new_object")}'
-                               f'(ptr {self.slot("terms_type")}, i64 {len(self.arrays)})')
+            answer = code.line(
+                f'call ptr {self.slot("new_object")}'
+                f'(ptr {self.slot("terms_type")}, i64 {len(self.arrays)})'
+            )
             self._stop_without(answer)
             set_item = self.slot('set_item')
             for index, array in enumerate(self.arrays):
@@ -220,8 +263,9 @@ class _Entry:
         code = self.code
         code.lines.append('compute:')
         out = [code.line(f'load ptr, ptr {slot}') for slot in self.out]
-        arguments = ', '.join(f'ptr {pointer}' for pointer
-                              in [*self.data, self.slot('numbers'), *out])
+        arguments = ', '.join(
+            f'ptr {pointer}' for pointer in [*self.data, self.slot('numbers'), *out]
+        )
         sound = code.line(f'call i1 @{self.quantity.name}({arguments})')
         answer = code.line(f'load ptr, ptr {self.answer}')
         code.do(f'br i1 {sound}, label %answer, label %unsound')
@@ -235,8 +279,9 @@ class _Entry:
         code = self.code
         code.lines.append('slow:')
         call, function = self.slot('call'), self.slot('fallback')
-        result = code.line(f'call ptr {call}(ptr {function}, ptr %arguments, i64 %count, '
-                           'ptr %keywords)')
+        result = code.line(
+            f'call ptr {call}(ptr {function}, ptr %arguments, i64 %count, ptr %keywords)'
+        )
         code.do(f'ret ptr {result}')
 
 
@@ -245,8 +290,12 @@ DECLARATIONS = 'declare double @llvm.fabs.f64(double)'
 
 class _MethodDefinition(ctypes.Structure):
     # PyMethodDef
-    _fields_ = (('name', ctypes.c_char_p), ('function', ctypes.c_void_p),
-                ('flags', ctypes.c_int), ('documentation', ctypes.c_char_p))
+    _fields_ = (
+        ('name', ctypes.c_char_p),
+        ('function', ctypes.c_void_p),
+        ('flags', ctypes.c_int),
+        ('documentation', ctypes.c_char_p),
+    )
 
 
 class _Context(np.ndarray):
@@ -272,8 +321,14 @@ def _itself(item):
 
 # Functions of Python's own library, in a table that nobody else sets argument types in.
 _API = ctypes.PyDLL(None)
-_SYMBOLS = ('PyType_GenericAlloc', 'PyTuple_SetItem', 'Py_DecRef', 'PyObject_Vectorcall',
-            'PyCFunction_NewEx', 'PyCapsule_GetPointer')
+_SYMBOLS = (
+    'PyType_GenericAlloc',
+    'PyTuple_SetItem',
+    'Py_DecRef',
+    'PyObject_Vectorcall',
+    'PyCFunction_NewEx',
+    'PyCapsule_GetPointer',
+)
 
 
 def make_callable(code, name, shapes, fallback, documentation, terms_type, numbers):
@@ -302,14 +357,25 @@ def make_callable(code, name, shapes, fallback, documentation, terms_type, numbe
     builtin_function_or_method
 
     """
-    addresses = {**_addresses(), 'fallback': id(fallback), 'terms_type': id(terms_type),
-                 'numbers': numbers.ctypes.data}
+    addresses = {
+        **_addresses(),
+        'fallback': id(fallback),
+        'terms_type': id(terms_type),
+        'numbers': numbers.ctypes.data,
+    }
     answers = [_answer(shapes, terms_type) for _ in range(_ANSWERS)]
-    kept = [id(item) for answer in answers for item in
-            ([answer, *answer] if len(shapes) > 1 else [answer, answer])]
+    kept = [
+        id(item)
+        for answer in answers
+        for item in ([answer, *answer] if len(shapes) > 1 else [answer, answer])
+    ]
     context = _Context([*(addresses[slot] for slot in _SLOTS), *kept])
-    method = _MethodDefinition(name.encode(), code.address(f'{name}_call'), _METHOD_FLAGS,
-                               _text(name, fallback.__func__, documentation))
+    method = _MethodDefinition(
+        name.encode(),
+        code.address(f'{name}_call'),
+        _METHOD_FLAGS,
+        _text(name, fallback.__func__, documentation),
+    )
     context.owned = (code, method, fallback, terms_type, answers, numbers)
     context.evaluation = fallback.__self__
     return _new_function()(ctypes.byref(method), context, 'dynamics_node')
@@ -333,11 +399,15 @@ def _text(name, function, documentation):
 
 @functools.cache
 def _addresses():
-    return {'array_type': id(np.ndarray), 'float64': id(np.dtype(np.float64)),
-            'new_array': _numpy_function(_PYARRAY_NEW),
-            'new_object': _address(_API.PyType_GenericAlloc),
-            'set_item': _address(_API.PyTuple_SetItem), 'release': _address(_API.Py_DecRef),
-            'call': _address(_API.PyObject_Vectorcall)}
+    return {
+        'array_type': id(np.ndarray),
+        'float64': id(np.dtype(np.float64)),
+        'new_array': _numpy_function(_PYARRAY_NEW),
+        'new_object': _address(_API.PyType_GenericAlloc),
+        'set_item': _address(_API.PyTuple_SetItem),
+        'release': _address(_API.Py_DecRef),
+        'call': _address(_API.PyObject_Vectorcall),
+    }
 
 
 def _answer(shapes, terms_type):
@@ -368,21 +438,26 @@ def is_supported():
         False on another Python than CPython, before 3.11, without the global lock, or of 32 bits.
 
     """
-    if (sys.implementation.name != 'cpython' or ctypes.sizeof(ctypes.c_void_p) != 8
-            or sysconfig.get_config_var('Py_GIL_DISABLED')
-            or not all(hasattr(_API, symbol) for symbol in _SYMBOLS)):
+    if (
+        sys.implementation.name != 'cpython'
+        or ctypes.sizeof(ctypes.c_void_p) != 8
+        or sysconfig.get_config_var('Py_GIL_DISABLED')
+        or not all(hasattr(_API, symbol) for symbol in _SYMBOLS)
+    ):
         return False
     probe = np.arange(3.0)
     at = id(probe)
     address = functools.partial(_read, ctypes.c_void_p, at)
     laid_out = (
-        address(_TYPE) == id(np.ndarray) and address(_DATA) == probe.ctypes.data
+        address(_TYPE) == id(np.ndarray)
+        and address(_DATA) == probe.ctypes.data
         and _read(ctypes.c_int64, at, _REFERENCES) == sys.getrefcount(probe) - 1
         and _read(ctypes.c_int, at, _DIMENSION_COUNT) == 1
         and _read(ctypes.c_int64, address(_DIMENSIONS), 0) == 3
         and address(_DESCRIPTION) == id(np.dtype(np.float64))
         and _read(ctypes.c_int, at, _FLAGS) & _OWN_PLAIN == _OWN_PLAIN
-        and address(_WEAK) is None)
+        and address(_WEAK) is None
+    )
     watcher = weakref.ref(probe)
     return laid_out and address(_WEAK) == id(watcher)
 

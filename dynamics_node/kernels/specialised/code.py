@@ -27,7 +27,8 @@ class Code:
         self.lines = []
         self.lanes = lanes
         self.number, self.integer, self.truth = (
-            kind if lanes == 1 else f'<{lanes} x {kind}>' for kind in ('double', 'i64', 'i1'))
+            kind if lanes == 1 else f'<{lanes} x {kind}>' for kind in ('double', 'i64', 'i1')
+        )
         self._count = 0
 
     def line(self, text):
@@ -68,8 +69,9 @@ def declarations(lanes):
     kinds = {'f64': 'double'}
     if lanes > 1:
         kinds[f'v{lanes}f64'] = f'<{lanes} x double>'
-    return [f'declare {kind} @llvm.fma.{name}({kind}, {kind}, {kind})'
-            for name, kind in kinds.items()]
+    return [
+        f'declare {kind} @llvm.fma.{name}({kind}, {kind}, {kind})' for name, kind in kinds.items()
+    ]
 
 
 def append_program(code, quantity, values):
@@ -111,5 +113,6 @@ def append_program(code, quantity, values):
             # 'contract': a multiplication and an addition may be fused, which rounds once less.
             left, right = map(name, arguments)
             names[index] = code.line(
-                f'{_ARITHMETIC[operation]} contract {code.number} {left}, {right}')
+                f'{_ARITHMETIC[operation]} contract {code.number} {left}, {right}'
+            )
     return name

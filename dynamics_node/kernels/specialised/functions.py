@@ -87,16 +87,20 @@ def batch_function(quantity, lanes):
     code.do('br i1 %more, label %loop, label %done')
     code.lines.append('done:')
     code.do('ret void')
-    return _function('void', f'{quantity.name}_batch', [*_pointers(quantity), 'i64 %count'],
-                     code.lines)
+    return _function(
+        'void', f'{quantity.name}_batch', [*_pointers(quantity), 'i64 %count'], code.lines
+    )
 
 
 def _places(quantity):
     # Which of the robot's numbers the program reads.
     operations = quantity.program.operations
     needed = (operations[index] for index in quantity.program.needed(quantity.results()))
-    return sorted(operation.arguments[1] for operation in needed
-                  if operation.name == 'input' and operation.arguments[0] == 'numbers')
+    return sorted(
+        operation.arguments[1]
+        for operation in needed
+        if operation.name == 'input' and operation.arguments[0] == 'numbers'
+    )
 
 
 def _number(code, place):
@@ -120,8 +124,10 @@ def _row(code, pointer, width):
 
 def _splat(code, scalar):
     first = code.line(f'insertelement {code.number} poison, double {scalar}, i32 0')
-    return code.line(f'shufflevector {code.number} {first}, {code.number} poison, '
-                     f'<{code.lanes} x i32> zeroinitializer')
+    return code.line(
+        f'shufflevector {code.number} {first}, {code.number} poison, '
+        f'<{code.lanes} x i32> zeroinitializer'
+    )
 
 
 def _gather(code, row, width, index):
@@ -145,7 +151,7 @@ def _scatter(code, row, values):
                 code.do(f'store double {scalar}, ptr {address}, align 8')
         return
     for first in [*range(0, width - lanes, lanes), width - lanes]:
-        square = _transposed(code, values[first:first + lanes])
+        square = _transposed(code, values[first : first + lanes])
         for lane, numbers in enumerate(square):
             address = code.address(row, lane * width + first)
             code.do(f'store {code.number} {numbers}, ptr {address}, align 8')
@@ -159,15 +165,24 @@ def _transposed(code, square):
         for i in range(lanes):
             if not i & step:
                 upper, lower = square[i], square[i + step]
-                square[i] = _shuffle(code, upper, lower, [
-                    k if not k & step else lanes + k - step for k in range(lanes)])
-                square[i + step] = _shuffle(code, upper, lower, [
-                    k + step if not k & step else lanes + k for k in range(lanes)])
+                square[i] = _shuffle(
+                    code,
+                    upper,
+                    lower,
+                    [k if not k & step else lanes + k - step for k in range(lanes)],
+                )
+                square[i + step] = _shuffle(
+                    code,
+                    upper,
+                    lower,
+                    [k + step if not k & step else lanes + k for k in range(lanes)],
+                )
         step *= 2
     return square
 
 
 def _shuffle(code, a, b, mask):
     places = ', '.join(f'i32 {k}' for k in mask)
-    return code.line(f'shufflevector {code.number} {a}, {code.number} {b}, '
-                     f'<{code.lanes} x i32> <{places}>')
+    return code.line(
+        f'shufflevector {code.number} {a}, {code.number} {b}, <{code.lanes} x i32> <{places}>'
+    )

@@ -37,7 +37,8 @@ def lanes():
 def _target():
     name, features = _host()
     return llvm.Target.from_default_triple().create_target_machine(
-        cpu=name, features=features.flatten(), opt=_SPEED, codemodel='jitdefault', jit=True)
+        cpu=name, features=features.flatten(), opt=_SPEED, codemodel='jitdefault', jit=True
+    )
 
 
 def compile_code(text):

@@ -53,8 +53,11 @@ class Quantity(NamedTuple):
 
     def results(self):
         """Return everything to be computed, from the tips to the base, as the formulas go."""
-        results = [(max(place), value) for output in self.outputs
-                   for place, value in np.ndenumerate(output)]
+        results = [
+            (max(place), value)
+            for output in self.outputs
+            for place, value in np.ndenumerate(output)
+        ]
         results.sort(key=lambda item: -item[0])
         return [*self.positive, *(value for _, value in results)]
 
@@ -93,9 +96,9 @@ class _Robot:
         self.numbers = numbers.astype(object)
         for row, column in input_places(len(structure), any_inertia):
             self.numbers[row, column] = self.program.input(
-                'numbers', row * closed_form.WIDTH + column)
-        self.work = tuple(array.astype(object)
-                          for array in closed_form.workspace(len(structure)))
+                'numbers', row * closed_form.WIDTH + column
+            )
+        self.work = tuple(array.astype(object) for array in closed_form.workspace(len(structure)))
 
     def inputs(self, name):
         return np.array([self.program.input(name, i) for i in range(self.n)], dtype=object)
@@ -108,8 +111,9 @@ def dynamics(structure, numbers, any_inertia=False):
     """Record D, C and G."""
     robot = _Robot(structure, numbers, any_inertia)
     D, C, G = robot.zeros(robot.n, robot.n), robot.zeros(robot.n, robot.n), robot.zeros(robot.n)
-    closed_form.dynamics_of_state(structure, robot.numbers, robot.inputs('q'), robot.inputs('qd'),
-                                  robot.work, D, C, G)
+    closed_form.dynamics_of_state(
+        structure, robot.numbers, robot.inputs('q'), robot.inputs('qd'), robot.work, D, C, G
+    )
     return Quantity('dynamics', robot.n, ('q', 'qd'), robot.program, (D, C, G))
 
 
@@ -140,8 +144,14 @@ def inverse_dynamics(structure, numbers, any_inertia=False):
     robot = _Robot(structure, numbers, any_inertia)
     tau = robot.zeros(robot.n)
     closed_form.inverse_dynamics_of_state(
-        structure, robot.numbers, robot.inputs('q'), robot.inputs('qd'), robot.inputs('qdd'),
-        robot.work, tau)
+        structure,
+        robot.numbers,
+        robot.inputs('q'),
+        robot.inputs('qd'),
+        robot.inputs('qdd'),
+        robot.work,
+        tau,
+    )
     return Quantity('inverse_dynamics', robot.n, ('q', 'qd', 'qdd'), robot.program, (tau,))
 
 
@@ -152,21 +162,35 @@ def forward_dynamics(structure, numbers, any_inertia=False):
     D, qdd = robot.zeros(robot.n, robot.n), robot.zeros(robot.n)
     pivots, margins = robot.zeros(robot.n), robot.zeros(robot.n)
     try:
-        closed_form.forward_dynamics_of_state(structure, robot.numbers, q, qd, tau,
-                                              robot.zeros(robot.n), robot.work, D, pivots, margins,
-                                              qdd)
+        closed_form.forward_dynamics_of_state(
+            structure,
+            robot.numbers,
+            q,
+            qd,
+            tau,
+            robot.zeros(robot.n),
+            robot.work,
+            D,
+            pivots,
+            margins,
+            qdd,
+        )
     except ZeroDivisionError:
         # A pivot is zero whatever the state: `positive` says that the result means nothing.
         qdd, margins = robot.zeros(robot.n), robot.zeros(1)
-    return Quantity('forward_dynamics', robot.n, ('q', 'qd', 'tau'), robot.program, (qdd,),
-                    tuple(margins))
+    return Quantity(
+        'forward_dynamics', robot.n, ('q', 'qd', 'tau'), robot.program, (qdd,), tuple(margins)
+    )
 
 
-ALL = (gravity_torque, dynamics, inverse_dynamics, mass_matrix, forward_dynamics,
-       coriolis_matrix)
+ALL = (gravity_torque, dynamics, inverse_dynamics, mass_matrix, forward_dynamics, coriolis_matrix)
 
 # Names of the arguments, and how many outputs.
 SIGNATURES = {
-    'gravity_torque': (('q',), 1), 'dynamics': (('q', 'qd'), 3),
-    'inverse_dynamics': (('q', 'qd', 'qdd'), 1), 'mass_matrix': (('q',), 1),
-    'forward_dynamics': (('q', 'qd', 'tau'), 1), 'coriolis_matrix': (('q', 'qd'), 1)}
+    'gravity_torque': (('q',), 1),
+    'dynamics': (('q', 'qd'), 3),
+    'inverse_dynamics': (('q', 'qd', 'qdd'), 1),
+    'mass_matrix': (('q',), 1),
+    'forward_dynamics': (('q', 'qd', 'tau'), 1),
+    'coriolis_matrix': (('q', 'qd'), 1),
+}

@@ -62,11 +62,17 @@ class RobotCode:
 
         """
         self.lanes = machine.lanes()
-        self.loaded = machine.LoadedCode(_split(object_files), [
-            *quantities.SIGNATURES, *(f'{name}_call' for name in quantities.SIGNATURES),
-            *(f'{name}_batch' for name in _BATCHED)])
-        self._batch = {name: self._function(f'{name}_batch', name, None, ctypes.c_int64)
-                       for name in _BATCHED}
+        self.loaded = machine.LoadedCode(
+            _split(object_files),
+            [
+                *quantities.SIGNATURES,
+                *(f'{name}_call' for name in quantities.SIGNATURES),
+                *(f'{name}_batch' for name in _BATCHED),
+            ],
+        )
+        self._batch = {
+            name: self._function(f'{name}_batch', name, None, ctypes.c_int64) for name in _BATCHED
+        }
         self._compare(structure, _loaded_everywhere(numbers) if any_inertia else numbers)
 
     def _function(self, symbol, name, result, *more):
@@ -94,8 +100,13 @@ class RobotCode:
     def _compare(self, structure, numbers):
         # Every function at one state, which the batches get several times.
         n = closed_form.joint_count(structure)
-        state = dict(zip(('q', 'qd', 'qdd', 'tau'),
-                         np.random.default_rng(1).uniform(-1.0, 1.0, (4, 1, n)), strict=True))
+        state = dict(
+            zip(
+                ('q', 'qd', 'qdd', 'tau'),
+                np.random.default_rng(1).uniform(-1.0, 1.0, (4, 1, n)),
+                strict=True,
+            )
+        )
         expected = _general(structure, numbers, state)
         for name, (inputs, _) in quantities.SIGNATURES.items():
             arguments = [state[key] for key in inputs]
@@ -106,8 +117,12 @@ class RobotCode:
                 _demand_agreement(name, outputs, expected[name])
             if name in _BATCHED:
                 many = [np.repeat(array, self.lanes, axis=0) for array in expected[name]]
-                self.batch(name, numbers, [np.repeat(array, self.lanes, axis=0)
-                                           for array in arguments], many)
+                self.batch(
+                    name,
+                    numbers,
+                    [np.repeat(array, self.lanes, axis=0) for array in arguments],
+                    many,
+                )
                 _demand_agreement(name, many, expected[name])
 
 
@@ -115,16 +130,17 @@ def _loaded_everywhere(numbers):
     # Every body gets a load of its own, of a size that fits the robot: so the comparison looks
     # at every input, at a mass matrix that is far from singular, and does not depend on whose
     # payload comes first.
-    size = np.abs(numbers[:-1, closed_form.TRANSLATION:closed_form.AXIS]).max() or 1.0
+    size = np.abs(numbers[:-1, closed_form.TRANSLATION : closed_form.AXIS]).max() or 1.0
     loaded = numbers.copy()
     body = loaded[:-1]
     body[:, closed_form.INERTIA] = 1.0
-    body[:, closed_form.INERTIA + 1:closed_form.INERTIA + 4] = size * np.array([0.1, -0.2, 0.3])
-    body[:, closed_form.INERTIA + 4:closed_form.MULTIPLIER] = size**2 * np.array(
-        [1.0, 0.1, -0.2, 1.1, 0.3, 1.2])
+    body[:, closed_form.INERTIA + 1 : closed_form.INERTIA + 4] = size * np.array([0.1, -0.2, 0.3])
+    body[:, closed_form.INERTIA + 4 : closed_form.MULTIPLIER] = size**2 * np.array(
+        [1.0, 0.1, -0.2, 1.1, 0.3, 1.2]
+    )
     body[:, closed_form.ROTOR] = size**2
     factor = np.linspace(1.0, 2.0, len(body))
-    body[:, closed_form.INERTIA:closed_form.MULTIPLIER] *= factor[:, None]
+    body[:, closed_form.INERTIA : closed_form.MULTIPLIER] *= factor[:, None]
     body[:, closed_form.ROTOR] *= factor
     loaded.flags.writeable = False  # a type that is compiled already
     return loaded
@@ -137,20 +153,27 @@ def _general(structure, numbers, state):
     G, efforts, accelerations, V = np.empty((1, n)), q.copy(), q.copy(), np.empty(1)
     closed_form.dynamics(structure, numbers, q, qd, D, C, G)
     closed_form.inverse_dynamics(structure, numbers, q, qd, qdd, efforts)
-    closed_form.forward_dynamics(structure, numbers, q, qd, tau, accelerations,
-                                 np.empty(1, dtype=bool))
+    closed_form.forward_dynamics(
+        structure, numbers, q, qd, tau, accelerations, np.empty(1, dtype=bool)
+    )
     closed_form.gravity_torque(structure, numbers, q, G, V)
-    return {'dynamics': (D, C, G), 'mass_matrix': (D,), 'coriolis_matrix': (C,),
-            'gravity_torque': (G,), 'inverse_dynamics': (efforts,),
-            'forward_dynamics': (accelerations,)}
+    return {
+        'dynamics': (D, C, G),
+        'mass_matrix': (D,),
+        'coriolis_matrix': (C,),
+        'gravity_torque': (G,),
+        'inverse_dynamics': (efforts,),
+        'forward_dynamics': (accelerations,),
+    }
 
 
 def _demand_agreement(name, actual, expected):
     for mine, theirs in zip(actual, expected, strict=True):
         # Written so that NaN fails.
         if not np.abs(mine - theirs).max() <= _AGREEMENT * (np.abs(theirs).max() + 1e-3):
-            raise RuntimeError(f'{name}: the machine code computes something else than the '
-                               'general kernel')
+            raise RuntimeError(
+                f'{name}: the machine code computes something else than the general kernel'
+            )
 
 
 def are_ordinary(name, inputs):
@@ -170,8 +193,10 @@ def are_ordinary(name, inputs):
 
     """
     arguments, _ = quantities.SIGNATURES[name]
-    return all(_is_below(values, LARGEST_ANGLE if argument == 'q' else call.LARGEST_NUMBER)
-               for argument, values in zip(arguments, inputs, strict=True))
+    return all(
+        _is_below(values, LARGEST_ANGLE if argument == 'q' else call.LARGEST_NUMBER)
+        for argument, values in zip(arguments, inputs, strict=True)
+    )
 
 
 @compiled
@@ -213,8 +238,12 @@ def compile_robot(structure, numbers, any_inertia=False):
             quantity = record(structure, numbers, any_inertia)
         except ProgramTooLongError:
             return None
-        parts = [*code.declarations(lanes), call.DECLARATIONS,
-                 functions.state_function(quantity), call.entry_function(quantity)]
+        parts = [
+            *code.declarations(lanes),
+            call.DECLARATIONS,
+            functions.state_function(quantity),
+            call.entry_function(quantity),
+        ]
         if quantity.name in _BATCHED:
             parts.append(functions.batch_function(quantity, lanes))
         objects.append(machine.compile_code('\n'.join(parts)))
@@ -224,9 +253,9 @@ def compile_robot(structure, numbers, any_inertia=False):
 def _split(content):
     objects, at = [], 0
     while at < len(content):
-        size, = _SIZE.unpack_from(content, at)
+        (size,) = _SIZE.unpack_from(content, at)
         at += _SIZE.size
-        objects.append(content[at:at + size])
+        objects.append(content[at : at + size])
         at += size
     return objects
 

@@ -14,10 +14,22 @@ _PI_HALF = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33)
 _TWO_OVER_PI = 0.6366197723675814
 # Added and subtracted again, this rounds to an integer and leaves it in the last bits.
 _ROUNDER = 6755399441055744.0
-_SIN = (-1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
-        2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10)
-_COS = (4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
-        -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11)
+_SIN = (
+    -1.66666666666666324348e-01,
+    8.33333333332248946124e-03,
+    -1.98412698298579493134e-04,
+    2.75573137070700676789e-06,
+    -2.50507602534068634195e-08,
+    1.58969099521155010221e-10,
+)
+_COS = (
+    4.16666666666666019037e-02,
+    -1.38888888888741095749e-03,
+    2.48015872894767294178e-05,
+    -2.75573143513906633035e-07,
+    2.08757232129817482790e-09,
+    -1.13596475577881948265e-11,
+)
 
 
 def sine_and_cosine(code, x):
@@ -50,15 +62,17 @@ def sine_and_cosine(code, x):
     odd = code.line(f'and {code.integer} {quadrant}, {code.integer_constant(1)}')
     swapped = code.line(f'icmp ne {code.integer} {odd}, {code.integer_constant(0)}')
     after = code.line(f'add {code.integer} {quadrant}, {code.integer_constant(1)}')
-    return (_signed(code, _select(code, swapped, cosine, sine), quadrant),
-            _signed(code, _select(code, swapped, sine, cosine), after))
+    return (
+        _signed(code, _select(code, swapped, cosine, sine), quadrant),
+        _signed(code, _select(code, swapped, sine, cosine), after),
+    )
 
 
 def _reduced(code, x, turns):
     # x - turns pi/2 as r + rest: r to the last place, rest what rounding has lost.
     first, second, third = map(code.constant, _PI_HALF)
     back = code.line(f'fneg {code.number} {turns}')
-    rough = code.fma(back, first, x)                    # Exact: all but few leading bits cancel.
+    rough = code.fma(back, first, x)  # Exact: all but few leading bits cancel.
     step = code.line(f'fmul {code.number} {turns}, {second}')
     less = code.line(f'fneg {code.number} {step}')
     lost_in_step = code.fma(turns, second, less)

@@ -179,6 +179,6 @@ def _clear(place):
         if _NAME.fullmatch(path.name):
             with contextlib.suppress(OSError):  # gone already: another process clears too
                 ages.append((path.stat().st_mtime, path))
-    for _, path in sorted(ages, reverse=True)[_MOST_FILES - 1:]:
+    for _, path in sorted(ages, reverse=True)[_MOST_FILES - 1 :]:
         with contextlib.suppress(OSError):
             path.unlink()

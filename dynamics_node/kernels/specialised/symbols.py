@@ -132,9 +132,11 @@ class Program:
                 found.add(item.index)
                 # First what it is made of, then itself: its bare index comes up again.
                 waiting.append(item.index)
-                waiting += [argument for argument
-                            in reversed(self.operations[item.index].arguments)
-                            if isinstance(argument, Symbol)]
+                waiting += [
+                    argument
+                    for argument in reversed(self.operations[item.index].arguments)
+                    if isinstance(argument, Symbol)
+                ]
         return order
 
 
@@ -217,7 +219,6 @@ class Symbol:
     def cos(self):
         """Record the cosine; `numpy.cos` calls this."""
         return self.program.record('cos', self)
-
 
 
 def _identity(argument):

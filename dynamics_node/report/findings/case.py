@@ -90,8 +90,11 @@ class Case:
     @cached_property
     def body_parent(self):
         """Of each movable joint the movable joint before it; None: the base."""
-        return {joint.name: self.entries[joint.parent].carrier
-                for joint in self.report.joints if joint.parent in self.entries}
+        return {
+            joint.name: self.entries[joint.parent].carrier
+            for joint in self.report.joints
+            if joint.parent in self.entries
+        }
 
     @cached_property
     def body_children(self):
@@ -132,8 +135,13 @@ class Case:
 
         """
         com = self.entries[link].com
-        return max([0.0 if com is None else float(np.linalg.norm(com)), *self.joints_at[link],
-                    *self._step_to.get(link, [])])
+        return max(
+            [
+                0.0 if com is None else float(np.linalg.norm(com)),
+                *self.joints_at[link],
+                *self._step_to.get(link, []),
+            ]
+        )
 
     def size_without_com(self, link):
         """Return the same without the centre of mass."""
@@ -141,8 +149,10 @@ class Case:
 
     @cached_property
     def _step_to(self):
-        return {joint.child: [float(np.linalg.norm(joint.placement[:3, 3]))]
-                for joint in self.description.joints}
+        return {
+            joint.child: [float(np.linalg.norm(joint.placement[:3, 3]))]
+            for joint in self.description.joints
+        }
 
     @cached_property
     def reach(self):

@@ -18,23 +18,42 @@ def find_coms(case):
     for entry in case.moved_with_mass:
         com = np.array(entry.com)
         distance, reach = float(np.linalg.norm(com)), case.reach
-        around = max([case.size_without_com(entry.name), *(
-            case.size_without_com(other.child) for other in case.description.joints
-            if other.parent == entry.name)])
+        around = max(
+            [
+                case.size_without_com(entry.name),
+                *(
+                    case.size_without_com(other.child)
+                    for other in case.description.joints
+                    if other.parent == entry.name
+                ),
+            ]
+        )
         if not (reach > 0.0 and distance > _OF_REACH * reach and distance > _FURTHER * around):
             continue
         # A misplaced decimal point, if that is enough; or else millimetres.
         is_near = 0.1 * distance < 2.0 * around
-        right, said = ((0.1 * com, 'a tenth of that') if is_near else
-                       (1e-3 * com, 'a thousandth of that'))
-        hits.append(Hit(
-            WARNING, 'far_com', entry.name,
-            f"link '{entry.name}' has its centre of mass {number(distance)} m from its frame, in "
-            f'a robot whose joints reach {number(reach)} m', f'{number(distance)} m',
-            _later(case, entry.name, right,
-                   f'if it were {said}, {number(float(np.linalg.norm(right)))} m'),
-            'URDF has metres: were millimetres written, or the coordinates of the whole robot '
-            'instead of those in the link frame?', distance / reach))
+        right, said = (
+            (0.1 * com, 'a tenth of that') if is_near else (1e-3 * com, 'a thousandth of that')
+        )
+        hits.append(
+            Hit(
+                WARNING,
+                'far_com',
+                entry.name,
+                f"link '{entry.name}' has its centre of mass {number(distance)} m from its frame, "
+                f'in a robot whose joints reach {number(reach)} m',
+                f'{number(distance)} m',
+                _later(
+                    case,
+                    entry.name,
+                    right,
+                    f'if it were {said}, {number(float(np.linalg.norm(right)))} m',
+                ),
+                'URDF has metres: were millimetres written, or the coordinates of the whole robot '
+                'instead of those in the link frame?',
+                distance / reach,
+            )
+        )
     return told(hits, lambda count: f'{count} links have their centre of mass outside the robot')
 
 

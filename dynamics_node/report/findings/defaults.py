@@ -26,8 +26,7 @@ _HEAVY, _LONG = 0.05, 0.1
 
 def find_defaults(case):
     """Return inertial parameters that look like no real ones."""
-    entries = [entry for entry in case.moved_with_mass
-               if entry.mass > _LIGHT * case.moving_mass]
+    entries = [entry for entry in case.moved_with_mass if entry.mass > _LIGHT * case.moving_mass]
     hits, balanced = [], []
     for entry in entries:
         inertial = case.links[entry.name].inertial
@@ -37,10 +36,15 @@ def find_defaults(case):
             balanced.append(_balanced(case, entry, inertial))
     hits = [hit for hit in hits if not hit.effect.share < _MATTERS]
     balanced = [hit for hit in balanced if not hit.effect.share < _MATTERS]
-    return [*_copies(case), *_unit_masses(case, entries),
-            *told(hits, lambda count: f'{count} links have a tensor that looks typed by hand'),
-            *told(balanced, lambda count: f'{count} heavy links have their centre of mass '
-                  'exactly on their joint')]
+    return [
+        *_copies(case),
+        *_unit_masses(case, entries),
+        *told(hits, lambda count: f'{count} links have a tensor that looks typed by hand'),
+        *told(
+            balanced,
+            lambda count: f'{count} heavy links have their centre of mass exactly on their joint',
+        ),
+    ]
 
 
 def is_placeholder(tensor):
@@ -77,13 +81,21 @@ def _placeholder(case, entry, inertial):
     mass = ' and a mass of exactly 1 kg' if has_unit_mass else ''
     at = f' at {number(entry.mass)} kg'
     return Hit(
-        WARNING if value > 0.0 and (is_far or has_unit_mass) else NOTE, 'placeholder_tensor',
-        entry.name, f"link '{entry.name}' has {said}{mass or at}: it looks typed by hand",
+        WARNING if value > 0.0 and (is_far or has_unit_mass) else NOTE,
+        'placeholder_tensor',
+        entry.name,
+        f"link '{entry.name}' has {said}{mass or at}: it looks typed by hand",
         said + mass,
-        inertia_effect(case, entry.name, changed(inertial, tensor=moment * np.eye(3)),
-                       f'as a ball of {number(size)} m'),
+        inertia_effect(
+            case,
+            entry.name,
+            changed(inertial, tensor=moment * np.eye(3)),
+            f'as a ball of {number(size)} m',
+        ),
         'take mass, centre of mass and tensor from the CAD program, or compute them from the '
-        'shape', abs(math.log(max(value, 1e-12) / moment)))
+        'shape',
+        abs(math.log(max(value, 1e-12) / moment)),
+    )
 
 
 def _unit_masses(case, entries):
@@ -91,14 +103,18 @@ def _unit_masses(case, entries):
     if len(exact) < 2:
         return []
     typed = [entry for entry in exact if is_placeholder(case.links[entry.name].inertial.tensor)]
-    inertials = {entry.name: changed(case.links[entry.name].inertial, mass=2.0)
-                 for entry in exact}
-    return [Finding(
-        WARNING if typed else NOTE, 'placeholder_mass', tuple(entry.name for entry in exact),
-        f'{len(exact)} moving links have a mass of exactly 1 kg: '
-        f'{names(entry.name for entry in exact)}',
-        torque_effect(case, inertials, 'if each of them weighed 2 kg').text,
-        'check that somebody has weighed them, or asked the CAD program')]
+    inertials = {entry.name: changed(case.links[entry.name].inertial, mass=2.0) for entry in exact}
+    return [
+        Finding(
+            WARNING if typed else NOTE,
+            'placeholder_mass',
+            tuple(entry.name for entry in exact),
+            f'{len(exact)} moving links have a mass of exactly 1 kg: '
+            f'{names(entry.name for entry in exact)}',
+            torque_effect(case, inertials, 'if each of them weighed 2 kg').text,
+            'check that somebody has weighed them, or asked the CAD program',
+        )
+    ]
 
 
 def _copies(case):
@@ -117,16 +133,28 @@ def _copies(case):
         if len(lengths) == 1 and not is_placeholder(case.links[chain[0].name].inertial.tensor):
             continue  # equal parts of equal length: a chain of modules
         # The first one may turn about the vertical: the weightiest of all is told.
-        effect = max((torque_effect(case, {entry.name: changed(
-            case.links[entry.name].inertial, mass=2.0 * entry.mass)},
-            f"if '{entry.name}' weighed twice as much") for entry in chain[:_COPIES_TRIED]),
-            key=lambda effect: np.nan_to_num(effect.share))
-        found.append(Finding(
-            NOTE if effect.share < _WARNS else WARNING, 'identical_inertials',
-            tuple(entry.name for entry in chain),
-            f'{len(chain)} links of one chain have the same <inertial> to the last digit '
-            f'({number(chain[0].mass)} kg): {names(entry.name for entry in chain)}',
-            effect.text, 'give each link its own <inertial>, unless they are equal parts indeed'))
+        effect = max(
+            (
+                torque_effect(
+                    case,
+                    {entry.name: changed(case.links[entry.name].inertial, mass=2.0 * entry.mass)},
+                    f"if '{entry.name}' weighed twice as much",
+                )
+                for entry in chain[:_COPIES_TRIED]
+            ),
+            key=lambda effect: np.nan_to_num(effect.share),
+        )
+        found.append(
+            Finding(
+                NOTE if effect.share < _WARNS else WARNING,
+                'identical_inertials',
+                tuple(entry.name for entry in chain),
+                f'{len(chain)} links of one chain have the same <inertial> to the last digit '
+                f'({number(chain[0].mass)} kg): {names(entry.name for entry in chain)}',
+                effect.text,
+                'give each link its own <inertial>, unless they are equal parts indeed',
+            )
+        )
     return found
 
 
@@ -139,28 +167,39 @@ def _in_one_chain(case, entries):
             way.add(joint)
             joint = case.body_parent.get(joint)
         # One of each body: what fixed joints put side by side is no chain.
-        chain = list({other.carrier: other for other in entries
-                      if other.carrier in way}.values())
+        chain = list({other.carrier: other for other in entries if other.carrier in way}.values())
         if len(chain) > len(best):
             best = chain
     return best
 
 
 def _is_balanced(case, entry, inertial):
-    return (not inertial.placement[:3, 3].any() and entry.mass > _HEAVY * case.moving_mass
-            and max([0.0, *case.joints_at[entry.name]]) > _LONG)
+    return (
+        not inertial.placement[:3, 3].any()
+        and entry.mass > _HEAVY * case.moving_mass
+        and max([0.0, *case.joints_at[entry.name]]) > _LONG
+    )
 
 
 def _balanced(case, entry, inertial):
-    joint = max((joint for joint in case.description.joints if joint.parent == entry.name),
-                key=lambda joint: float(np.linalg.norm(joint.placement[:3, 3])))
+    joint = max(
+        (joint for joint in case.description.joints if joint.parent == entry.name),
+        key=lambda joint: float(np.linalg.norm(joint.placement[:3, 3])),
+    )
     half = 0.5 * joint.placement[:3, 3]
     return Hit(
-        NOTE, 'com_at_joint', entry.name,
+        NOTE,
+        'com_at_joint',
+        entry.name,
         f"link '{entry.name}' of {number(entry.mass)} kg has its centre of mass exactly at its "
         f'frame, though it goes {number(2.0 * float(np.linalg.norm(half)))} m to joint '
-        f"'{joint.name}'", f'{number(entry.mass)} kg',
-        torque_effect(case, {entry.name: changed(inertial, com=half)},
-                      f"if it were halfway to joint '{joint.name}'"),
-        'check that <inertial><origin xyz> is not just missing', entry.mass)
-
+        f"'{joint.name}'",
+        f'{number(entry.mass)} kg',
+        torque_effect(
+            case,
+            {entry.name: changed(inertial, com=half)},
+            f"if it were halfway to joint '{joint.name}'",
+        ),
+        'check that <inertial><origin xyz> is not just missing',
+        entry.mass,
+    )

@@ -90,11 +90,17 @@ def inertia_effect(case, link, inertial, with_what):
     place = np.unravel_index(int(np.argmax(np.abs(change))), change.shape)
     share, name = float(change[place]), case.study.model.joint_names[joints[place[1]]]
     if abs(share) < NOTHING:
-        return Effect('next to nothing: the inertia that any joint feels changes by less than '
-                      f'{percent(NOTHING)} {with_what}, gravity torques not at all', abs(share))
-    way = (f'up to {percent(share)} more' if share > 0.0 else f'up to {percent(-share)} less')
-    return Effect(f"joint '{name}' seems to have {way} inertia (D_jj) than {with_what}; gravity "
-                  'torques do not change', abs(share))
+        return Effect(
+            'next to nothing: the inertia that any joint feels changes by less than '
+            f'{percent(NOTHING)} {with_what}, gravity torques not at all',
+            abs(share),
+        )
+    way = f'up to {percent(share)} more' if share > 0.0 else f'up to {percent(-share)} less'
+    return Effect(
+        f"joint '{name}' seems to have {way} inertia (D_jj) than {with_what}; gravity "
+        'torques do not change',
+        abs(share),
+    )
 
 
 def changed(inertial, **values):
@@ -129,10 +135,14 @@ def added_torque(case, link, mass):
     study = case.study
     bare = study.with_inertials({entry.name: None for entry in case.moved})
     loaded = bare.with_payload(link, mass)
-    torques = {joint: abs(study.worst_with(loaded, joint)[1])
-               for joint in study.joints_under(link)}
-    turning = {joint: torque for joint, torque in torques.items()
-               if unit_of(case, study.model.joint_names[joint]) == 'N m'}
+    torques = {
+        joint: abs(study.worst_with(loaded, joint)[1]) for joint in study.joints_under(link)
+    }
+    turning = {
+        joint: torque
+        for joint, torque in torques.items()
+        if unit_of(case, study.model.joint_names[joint]) == 'N m'
+    }
     chosen = turning or torques
     joint = max(chosen, key=lambda key: chosen[key])
     return study.model.joint_names[joint], chosen[joint]
@@ -148,16 +158,26 @@ def _torque_sentence(case, model, links, if_what):
     joints = sorted({joint for link in links for joint in study.joints_under(link)})
     if not joints:
         return Effect('none: no joint moves it', 0.0)
-    pairs = [(joint, abs(study.worst[joint][1]), abs(study.worst_with(model, joint)[1]))
-             for joint in joints]
+    pairs = [
+        (joint, abs(study.worst[joint][1]), abs(study.worst_with(model, joint)[1]))
+        for joint in joints
+    ]
     joint, before, after = max(pairs, key=lambda pair: abs(pair[2] - pair[1]))
     name = study.model.joint_names[joint]
     if abs(after - before) <= NOTHING * max(before, after):
-        return Effect('next to nothing: no gravity torque changes by more than '
-                      f'{percent(NOTHING)} {if_what}', 0.0)
+        return Effect(
+            'next to nothing: no gravity torque changes by more than '
+            f'{percent(NOTHING)} {if_what}',
+            0.0,
+        )
     unit = unit_of(case, name)
-    more = ('' if before <= 1e-9 * after else
-            f' ({"+" if after > before else "-"}{percent(abs(after - before) / before)})')
-    return Effect(f"the largest gravity torque of joint '{name}' would be {number(after)} {unit} "
-                  f'instead of {number(before)} {unit}{more} {if_what}',
-                  abs(after - before) / max(before, study.rounding))
+    more = (
+        ''
+        if before <= 1e-9 * after
+        else f' ({"+" if after > before else "-"}{percent(abs(after - before) / before)})'
+    )
+    return Effect(
+        f"the largest gravity torque of joint '{name}' would be {number(after)} {unit} "
+        f'instead of {number(before)} {unit}{more} {if_what}',
+        abs(after - before) / max(before, study.rounding),
+    )

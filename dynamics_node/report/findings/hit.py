@@ -68,16 +68,26 @@ def told(hits, plural):
     for (severity, kind), group in groups.items():
         group.sort(key=lambda hit: -hit.weight)
         if len(group) <= _APART:
-            findings += [Finding(severity, kind, (hit.subject,), hit.what, hit.effect_text(),
-                                 hit.advice) for hit in group]
+            findings += [
+                Finding(severity, kind, (hit.subject,), hit.what, hit.effect_text(), hit.advice)
+                for hit in group
+            ]
             continue
-        shown = [f"'{hit.subject}' ({hit.short})" if hit.short else f"'{hit.subject}'"
-                 for hit in group[:_SHOWN]]
+        shown = [
+            f"'{hit.subject}' ({hit.short})" if hit.short else f"'{hit.subject}'"
+            for hit in group[:_SHOWN]
+        ]
         effect = group[0].effect_text()
-        findings.append(Finding(
-            severity, kind, tuple(hit.subject for hit in group),
-            f'{plural(len(group))}: {listed(shown, len(group))}',
-            f"'{group[0].subject}': {effect}" if effect else '', _advice(group)))
+        findings.append(
+            Finding(
+                severity,
+                kind,
+                tuple(hit.subject for hit in group),
+                f'{plural(len(group))}: {listed(shown, len(group))}',
+                f"'{group[0].subject}': {effect}" if effect else '',
+                _advice(group),
+            )
+        )
     return findings
 
 

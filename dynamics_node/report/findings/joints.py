@@ -12,11 +12,20 @@ from ...model import build_tree
 
 # Words of a warning of the reader → kind, severity and advice.
 _READER = (
-    ('it is normalised to 1', 'axis_length', NOTE, 'none: it is normalised',
-     'write a unit vector, so that every other program takes the same axis'),
-    ('must be >= 0: 0 is used', 'negative_friction', WARNING,
-     'no gravity torque; compensate.friction leaves it out',
-     'write <dynamics damping="..." friction="..."/> without a minus sign'),
+    (
+        'it is normalised to 1',
+        'axis_length',
+        NOTE,
+        'none: it is normalised',
+        'write a unit vector, so that every other program takes the same axis',
+    ),
+    (
+        'must be >= 0: 0 is used',
+        'negative_friction',
+        WARNING,
+        'no gravity torque; compensate.friction leaves it out',
+        'write <dynamics damping="..." friction="..."/> without a minus sign',
+    ),
 )
 # Warnings that have findings of their own.
 _ELSEWHERE = ('inertia is not physical', 'axis is missing', 'moving links without mass')
@@ -29,28 +38,46 @@ def find_joints(case):
     for words, kind, severity, effect, advice in _READER:
         mine = [warning for warning in warnings if words in warning]
         if mine:
-            found.append(Finding(severity, kind, _subjects(case, mine), _together(mine), effect,
-                                 advice))
+            found.append(
+                Finding(severity, kind, _subjects(case, mine), _together(mine), effect, advice)
+            )
     known = (*_ELSEWHERE, *(words for words, *_ in _READER))
-    found += [Finding(WARNING, 'reader_warning', (), warning, '', 'look at it in the URDF')
-              for warning in warnings if not any(words in warning for words in known)]
+    found += [
+        Finding(WARNING, 'reader_warning', (), warning, '', 'look at it in the URDF')
+        for warning in warnings
+        if not any(words in warning for words in known)
+    ]
     if not case.report.joints and not case.report.refusals:
-        found.append(Finding(NOTE, 'no_movable_joint', (), 'nothing moves: the robot has no '
-                             'movable joint', 'there is no torque to compute',
-                             'make a joint revolute, continuous or prismatic'))
+        found.append(
+            Finding(
+                NOTE,
+                'no_movable_joint',
+                (),
+                'nothing moves: the robot has no movable joint',
+                'there is no torque to compute',
+                'make a joint revolute, continuous or prismatic',
+            )
+        )
     return found
 
 
 def _axes(case):
-    missing = [joint for joint in case.report.joints
-               if not case.joints[joint.name].stated.has_axis]
+    missing = [
+        joint for joint in case.report.joints if not case.joints[joint.name].stated.has_axis
+    ]
     if not missing:
         return []
-    return [Finding(
-        WARNING, 'missing_axis', tuple(joint.name for joint in missing),
-        f'{"one joint has" if len(missing) == 1 else f"{len(missing)} joints have"} no <axis>, '
-        f'so the x axis is used: {names(joint.name for joint in missing)}',
-        _axis_effect(case, missing[0]), 'write the <axis xyz="..."/> that is meant')]
+    return [
+        Finding(
+            WARNING,
+            'missing_axis',
+            tuple(joint.name for joint in missing),
+            f'{"one joint has" if len(missing) == 1 else f"{len(missing)} joints have"} no '
+            f'<axis>, so the x axis is used: {names(joint.name for joint in missing)}',
+            _axis_effect(case, missing[0]),
+            'write the <axis xyz="..."/> that is meant',
+        )
+    ]
 
 
 def _axis_effect(case, entry):
@@ -58,20 +85,28 @@ def _axis_effect(case, entry):
     joint = entry.mimics or entry.name
     if case.study is None or entry.gravity is None:
         return ''
-    joints = tuple(replace(other, axis=np.array([0.0, 0.0, 1.0])) if other.name == joint
-                   else other for other in case.study.description.joints)
-    model = one_off_model(build_tree(replace(case.study.description, joints=joints)),
-                          case.study.model.gravity)
+    joints = tuple(
+        replace(other, axis=np.array([0.0, 0.0, 1.0])) if other.name == joint else other
+        for other in case.study.description.joints
+    )
+    model = one_off_model(
+        build_tree(replace(case.study.description, joints=joints)), case.study.model.gravity
+    )
     index = model.joint_names.index(joint)
     torque = abs(case.study.worst_with(model, index)[1])
-    return (f"the largest gravity torque of joint '{joint}' is "
-            f'{number(entry.gravity.magnitude)} {entry.effort_unit}; with the z axis it would be '
-            f'{number(torque)} {entry.effort_unit}')
+    return (
+        f"the largest gravity torque of joint '{joint}' is "
+        f'{number(entry.gravity.magnitude)} {entry.effort_unit}; with the z axis it would be '
+        f'{number(torque)} {entry.effort_unit}'
+    )
 
 
 def _subjects(case, warnings):
-    return tuple(name for name in case.joints
-                 if any(warning.startswith(f"joint '{name}':") for warning in warnings))
+    return tuple(
+        name
+        for name in case.joints
+        if any(warning.startswith(f"joint '{name}':") for warning in warnings)
+    )
 
 
 def _together(warnings, most=3):

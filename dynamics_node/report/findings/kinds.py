@@ -11,8 +11,10 @@ KINDS = {
     'joint_moves_nothing': ((PROBLEM,), 'a joint beyond which there is no inertia'),
     'shape_without_mass': ((WARNING, NOTE), 'a moving link that can be seen but weighs nothing'),
     'grams': ((WARNING,), 'a link far lighter than its neighbours or than its inertia asks for'),
-    'triangle_inequality': ((PROBLEM, NOTE), 'principal moments that no real body has, often a '
-                            'missing decimal point'),
+    'triangle_inequality': (
+        (PROBLEM, NOTE),
+        'principal moments that no real body has, often a missing decimal point',
+    ),
     'inertia_too_large': ((WARNING,), 'moments far too large for the mass and the size'),
     'tensor_not_about_com': ((WARNING, NOTE), 'a tensor that seems to be about the link frame'),
     'placeholder_tensor': ((WARNING, NOTE), 'a tensor of 1, 1e-3, 1e-6..., or of zero'),
@@ -24,8 +26,7 @@ KINDS = {
     'over_effort_limit': ((WARNING,), 'gravity alone takes more than the effort limit'),
     'no_effort_limit': ((WARNING, NOTE), 'a joint without effort limit'),
     'zero_effort_limit': ((WARNING, NOTE), 'an effort limit of 0 or below'),
-    'effort_limit_too_large': ((WARNING, NOTE),
-                               'an effort limit that no motor of this robot has'),
+    'effort_limit_too_large': ((WARNING, NOTE), 'an effort limit that no motor of this robot has'),
     'limits_in_degrees': ((WARNING,), 'position limits of many turns, as if in degrees'),
     'no_velocity_limit': ((NOTE,), 'a joint without velocity limit'),
     'empty_range': ((WARNING,), 'lower and upper limit are equal or exchanged'),

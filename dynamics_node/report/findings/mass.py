@@ -37,26 +37,43 @@ def find_masses(case):
 
 def _nothing_weighs(case):
     without = [entry.name for entry in case.moved if not entry.has_inertial]
-    how = ('none of them has an <inertial>' if len(without) == len(case.moved) else
-           'every <inertial> has a mass of 0')
+    how = (
+        'none of them has an <inertial>'
+        if len(without) == len(case.moved)
+        else 'every <inertial> has a mass of 0'
+    )
     return Finding(
-        PROBLEM, 'no_inertial', tuple(entry.name for entry in case.moved),
+        PROBLEM,
+        'no_inertial',
+        tuple(entry.name for entry in case.moved),
         f'nothing that moves has a mass: {len(case.moved)} moving links, {how}',
         'every torque that is computed is 0: gravity compensation does nothing, and the mass '
         'matrix is zero, so that the node refuses to be enabled',
         'add an <inertial> to every moving link; the exporter of the CAD program writes them, '
-        'and a robot without them is meant for pictures only')
+        'and a robot without them is meant for pictures only',
+    )
 
 
 def _negative(case):
-    hits = [Hit(PROBLEM, 'negative_mass', entry.name,
-                f"link '{entry.name}' has a mass of {number(entry.mass)} kg",
-                f'{number(entry.mass)} kg',
-                _later(torque_effect, case, {entry.name: changed(
-                    case.links[entry.name].inertial, mass=0.0)}, 'if it weighed nothing, let '
-                    'alone as much as it is said to lift'),
-                'write its mass without the minus sign, or leave the <inertial> away',
-                -entry.mass) for entry in case.report.links if entry.mass < 0.0]
+    hits = [
+        Hit(
+            PROBLEM,
+            'negative_mass',
+            entry.name,
+            f"link '{entry.name}' has a mass of {number(entry.mass)} kg",
+            f'{number(entry.mass)} kg',
+            _later(
+                torque_effect,
+                case,
+                {entry.name: changed(case.links[entry.name].inertial, mass=0.0)},
+                'if it weighed nothing, let alone as much as it is said to lift',
+            ),
+            'write its mass without the minus sign, or leave the <inertial> away',
+            -entry.mass,
+        )
+        for entry in case.report.links
+        if entry.mass < 0.0
+    ]
     return told(hits, lambda count: f'{count} links have a negative mass')
 
 
@@ -69,32 +86,59 @@ def _moves_nothing(case):
     leaders: dict[str, list] = {}
     for joint in case.report.joints:
         leaders.setdefault(joint.mimics or joint.name, []).append(joint)
-    empty = [name for name, followers in leaders.items() if all(
-        case.body_mass[joint.name] + case.mass_behind[joint.name] <= 0.0 for joint in followers)]
+    empty = [
+        name
+        for name, followers in leaders.items()
+        if all(
+            case.body_mass[joint.name] + case.mass_behind[joint.name] <= 0.0 for joint in followers
+        )
+    ]
     if not empty:
         return []
-    return [Finding(
-        PROBLEM, 'joint_moves_nothing', tuple(empty),
-        f'{"joint" if len(empty) == 1 else f"{len(empty)} joints"} {names(empty)} '
-        f'{"moves" if len(empty) == 1 else "move"} nothing that has a mass',
-        'the row of D is zero there, so D is not positive definite: the node refuses to be '
-        'enabled, and forward_dynamics has no answer',
-        'add an <inertial> to the links behind it, or make it a fixed joint')]
+    return [
+        Finding(
+            PROBLEM,
+            'joint_moves_nothing',
+            tuple(empty),
+            f'{"joint" if len(empty) == 1 else f"{len(empty)} joints"} {names(empty)} '
+            f'{"moves" if len(empty) == 1 else "move"} nothing that has a mass',
+            'the row of D is zero there, so D is not positive definite: the node refuses to be '
+            'enabled, and forward_dynamics has no answer',
+            'add an <inertial> to the links behind it, or make it a fixed joint',
+        )
+    ]
 
 
 def _shapes(case):
-    massless = [entry for entry in case.moved
-                if entry.has_shape and not entry.mass > 0.0 and not entry.mass < 0.0
-                and not math.isnan(entry.mass)]
+    massless = [
+        entry
+        for entry in case.moved
+        if entry.has_shape
+        and not entry.mass > 0.0
+        and not entry.mass < 0.0
+        and not math.isnan(entry.mass)
+    ]
     mass = _ordinary_mass(case)
-    hits = [Hit(_severity(case, entry), 'shape_without_mass', entry.name,
-                f"link '{entry.name}' has a shape but {_no_mass(entry)}: it weighs nothing",
-                _no_mass(entry),
-                _later(payload_effect, case, entry.name, mass,
-                       f'if it weighed {kilograms(mass)}, as the median link that moves'),
-                'add an <inertial> with its real mass; if the mass of the link that it is fixed '
-                'to has it in already, all is well', case.body_mass[entry.carrier] == 0.0)
-            for entry in massless]
+    hits = [
+        Hit(
+            _severity(case, entry),
+            'shape_without_mass',
+            entry.name,
+            f"link '{entry.name}' has a shape but {_no_mass(entry)}: it weighs nothing",
+            _no_mass(entry),
+            _later(
+                payload_effect,
+                case,
+                entry.name,
+                mass,
+                f'if it weighed {kilograms(mass)}, as the median link that moves',
+            ),
+            'add an <inertial> with its real mass; if the mass of the link that it is fixed '
+            'to has it in already, all is well',
+            case.body_mass[entry.carrier] == 0.0,
+        )
+        for entry in massless
+    ]
     return told(hits, lambda count: f'{count} moving links have a shape but no mass')
 
 
@@ -129,14 +173,23 @@ def _grams(case):
             mass = _mean(neighbours)
             right = f'if it weighed as much as its neighbours, {kilograms(mass)}'
         effect = torque_effect(
-            case, {entry.name: changed(case.links[entry.name].inertial, mass=mass)}, right)
+            case, {entry.name: changed(case.links[entry.name].inertial, mass=mass)}, right
+        )
         if effect.share < _MATTERS and not case.body_children[entry.carrier]:
             continue  # at the end of a chain, propellers and the like may be as light
-        hits.append(Hit(
-            WARNING, 'grams', entry.name, sentence, short, effect,
-            'URDF has kilograms: were grams written as kilograms, or is a digit lost? Weigh it '
-            f'or ask the CAD program, and correct <mass value="{number(entry.mass)}"/>',
-            max(neighbours) / entry.mass))
+        hits.append(
+            Hit(
+                WARNING,
+                'grams',
+                entry.name,
+                sentence,
+                short,
+                effect,
+                'URDF has kilograms: were grams written as kilograms, or is a digit lost? Weigh '
+                f'it or ask the CAD program, and correct <mass value="{number(entry.mass)}"/>',
+                max(neighbours) / entry.mass,
+            )
+        )
     return told(hits, lambda count: f'{count} links are far lighter than their neighbours')
 
 
@@ -152,8 +205,9 @@ def _is_plausible(mass, neighbours):
 
 def _are_all_too_large(case):
     # Then the unit of the moments is wrong, and not the mass of the lightest.
-    heavy = [entry for entry in case.moved_with_mass
-             if entry.mass > _LIGHT_LINK * case.moving_mass]
+    heavy = [
+        entry for entry in case.moved_with_mass if entry.mass > _LIGHT_LINK * case.moving_mass
+    ]
     return 2 * sum(is_too_large(case, entry) for entry in heavy) > len(heavy)
 
 
@@ -161,50 +215,88 @@ def _too_light(case, entry, judges_moments):
     # A sentence, its numbers, and the masses of the neighbours, kg; None for a likely mass.
     body = case.body_mass[entry.carrier]
     parent = case.body_parent[entry.carrier]
-    before = case.body_mass[parent] if parent else sum(
-        other.mass for other in case.report.links if other.carrier is None and other.mass > 0.0)
-    behind = [case.body_mass[child] for child in case.body_children[entry.carrier]
-              if case.body_mass[child] > 0.0]
-    neighbours = [mass for mass in (before, *behind, body - entry.mass)
-                  if mass > 0.1 * entry.mass]
+    before = (
+        case.body_mass[parent]
+        if parent
+        else sum(
+            other.mass for other in case.report.links if other.carrier is None and other.mass > 0.0
+        )
+    )
+    behind = [
+        case.body_mass[child]
+        for child in case.body_children[entry.carrier]
+        if case.body_mass[child] > 0.0
+    ]
+    neighbours = [mass for mass in (before, *behind, body - entry.mass) if mass > 0.1 * entry.mass]
     if not neighbours:
         return None
-    gyration = math.sqrt(max(entry.principal_moments) / entry.mass) if (
-        max(entry.principal_moments) > 0.0) else 0.0
+    gyration = (
+        math.sqrt(max(entry.principal_moments) / entry.mass)
+        if (max(entry.principal_moments) > 0.0)
+        else 0.0
+    )
     reach = case.reach
     is_most_of_body = entry.mass >= 0.5 * body
     is_lighter = judges_moments and entry.mass < 0.1 * max(neighbours)
-    if is_lighter and ((
+    if is_lighter and (
+        (
             gyration > _GYRATION_OF_ALL * reach > 0.0
-            and _is_plausible(1000.0 * entry.mass, neighbours)) or (
-            is_most_of_body and gyration > _GYRATION * reach > 0.0
-            and entry.mass < 0.1 * min(neighbours)) or (
-            # Beside heavier ones on the same body: a tool, or what carries one.
-            not is_most_of_body and entry.mass < _LIGHT and is_too_large(case, entry)
             and _is_plausible(1000.0 * entry.mass, neighbours)
-            and not is_placeholder(case.links[entry.name].inertial.tensor))):
-        return (f"link '{entry.name}' weighs {kilograms(entry.mass)}, but its moments of inertia "
-                f'are those of a part of {number(gyration)} m radius (sqrt(I/m)) in a robot that '
-                f'reaches {number(reach)} m; its neighbours weigh '
-                f'{kilograms(max(neighbours))}', kilograms(entry.mass), neighbours)
+        )
+        or (
+            is_most_of_body
+            and gyration > _GYRATION * reach > 0.0
+            and entry.mass < 0.1 * min(neighbours)
+        )
+        or (
+            # Beside heavier ones on the same body: a tool, or what carries one.
+            not is_most_of_body
+            and entry.mass < _LIGHT
+            and is_too_large(case, entry)
+            and _is_plausible(1000.0 * entry.mass, neighbours)
+            and not is_placeholder(case.links[entry.name].inertial.tensor)
+        )
+    ):
+        return (
+            f"link '{entry.name}' weighs {kilograms(entry.mass)}, but its moments of inertia "
+            f'are those of a part of {number(gyration)} m radius (sqrt(I/m)) in a robot that '
+            f'reaches {number(reach)} m; its neighbours weigh '
+            f'{kilograms(max(neighbours))}',
+            kilograms(entry.mass),
+            neighbours,
+        )
     if not is_most_of_body:
         return None
     load = case.mass_behind[entry.carrier]
-    if (not behind and _LIGHTER_AT_END * body < before and entry.mass < _LIGHT_AT_END
-            and _is_plausible(1000.0 * entry.mass, neighbours)):
-        return (f"link '{entry.name}' weighs {kilograms(entry.mass)}, "
-                f'{factor(before / body)} less than what carries it', kilograms(entry.mass),
-                neighbours)
-    if (entry.mass < _LIGHT and behind and before > 0.0 and (entry.has_shape or not
-                                                             case.any_shapes)
-            and _LIGHTER * body < min(before, max(behind)) and load > _LIGHTER * body):
-        return (f"link '{entry.name}' weighs {kilograms(entry.mass)}, "
-                f'{factor(min(before, max(behind)) / body)} less than what is before and behind '
-                f'it, and carries {kilograms(load)}', kilograms(entry.mass), neighbours)
+    if (
+        not behind
+        and _LIGHTER_AT_END * body < before
+        and entry.mass < _LIGHT_AT_END
+        and _is_plausible(1000.0 * entry.mass, neighbours)
+    ):
+        return (
+            f"link '{entry.name}' weighs {kilograms(entry.mass)}, "
+            f'{factor(before / body)} less than what carries it',
+            kilograms(entry.mass),
+            neighbours,
+        )
+    if (
+        entry.mass < _LIGHT
+        and behind
+        and before > 0.0
+        and (entry.has_shape or not case.any_shapes)
+        and _LIGHTER * body < min(before, max(behind))
+        and load > _LIGHTER * body
+    ):
+        return (
+            f"link '{entry.name}' weighs {kilograms(entry.mass)}, "
+            f'{factor(min(before, max(behind)) / body)} less than what is before and behind '
+            f'it, and carries {kilograms(load)}',
+            kilograms(entry.mass),
+            neighbours,
+        )
     return None
 
 
 def _later(function, *arguments):
     return lambda: function(*arguments)
-
-

@@ -52,23 +52,40 @@ def find_tensors(case):
     large = [hit for hit in large if not hit.effect.share < _MATTERS]
     shifted = [hit for hit in shifted if not hit.effect.share < _MATTERS]
     return [
-        *told(impossible, lambda count: f'{count} links have a tensor that is not positive '
-              'definite'),
-        *told(triangle, lambda count: f'{count} links have principal moments that no real body '
-              'has (one is larger than the sum of the two others)'),
-        *told(large, lambda count: f'{count} links have moments of inertia far too large for '
-              'their mass and size'),
-        *told(shifted, lambda count: f'{count} links have a tensor that seems to be about the '
-              'link frame, not about the centre of mass')]
+        *told(
+            impossible, lambda count: f'{count} links have a tensor that is not positive definite'
+        ),
+        *told(
+            triangle,
+            lambda count: (
+                f'{count} links have principal moments that no real body '
+                'has (one is larger than the sum of the two others)'
+            ),
+        ),
+        *told(
+            large,
+            lambda count: (
+                f'{count} links have moments of inertia far too large for their mass and size'
+            ),
+        ),
+        *told(
+            shifted,
+            lambda count: (
+                f'{count} links have a tensor that seems to be about the '
+                'link frame, not about the centre of mass'
+            ),
+        ),
+    ]
 
 
 def _with_the_same(case, names):
     # A larger link whose mass and tensor are those of one that is too small for them.
     alike = {_key(case.links[name].inertial) for name in names}
-    return [_too_large(case, entry, np.array(entry.principal_moments),
-                       case.links[entry.name].inertial)
-            for entry in case.moved_with_mass if entry.name not in names
-            and _key(case.links[entry.name].inertial) in alike]
+    return [
+        _too_large(case, entry, np.array(entry.principal_moments), case.links[entry.name].inertial)
+        for entry in case.moved_with_mass
+        if entry.name not in names and _key(case.links[entry.name].inertial) in alike
+    ]
 
 
 def _key(inertial):
@@ -83,28 +100,38 @@ def _impossible(case, entry, principal, inertial):
     if entry.carrier is None and case.examination.is_whole:
         severity, effect = NOTE, _NOTHING
     return Hit(
-        severity, 'impossible_inertia', entry.name,
+        severity,
+        'impossible_inertia',
+        entry.name,
         f"link '{entry.name}': no real body has its inertia: the smallest principal moment is "
-        f'{number(principal[0])} kg m^2, must be >= 0', f'{number(principal[0])} kg m^2', effect,
+        f'{number(principal[0])} kg m^2, must be >= 0',
+        f'{number(principal[0])} kg m^2',
+        effect,
         'the signs of ixy, ixz, iyz or a diagonal entry are wrong, or one product of inertia is '
         'too large: copy the tensor anew from the CAD program, about the centre of mass',
-        -float(principal[0]))
+        -float(principal[0]),
+    )
 
 
 def _triangle(case, entry, principal, inertial):
     excess = float(principal[2] / max(principal[0] + principal[1], 1e-300))
     severity = PROBLEM if excess > _ROUNDED else NOTE
     # What is rounding beside the largest moment is shown as nothing.
-    least, middle = (0.0 if abs(moment) < principal[2] / _FLAT else float(moment)
-                     for moment in principal[:2])
+    least, middle = (
+        0.0 if abs(moment) < principal[2] / _FLAT else float(moment) for moment in principal[:2]
+    )
     short = _excess(excess) if excess < _FLAT else 'two moments of 0'
-    what = (f"link '{entry.name}': no real body has its inertia: the largest principal moment, "
-            f'{number(principal[2])} kg m^2, is {_excess(excess)} the sum of the two others, '
-            f'{number(least)} + {number(middle)}')
+    what = (
+        f"link '{entry.name}': no real body has its inertia: the largest principal moment, "
+        f'{number(principal[2])} kg m^2, is {_excess(excess)} the sum of the two others, '
+        f'{number(least)} + {number(middle)}'
+    )
     if excess > _FLAT:
-        what = (f"link '{entry.name}': no real body has its inertia: one principal moment is "
-                f'{number(principal[2])} kg m^2, the two others are {number(least)} and '
-                f'{number(middle)}')
+        what = (
+            f"link '{entry.name}': no real body has its inertia: one principal moment is "
+            f'{number(principal[2])} kg m^2, the two others are {number(least)} and '
+            f'{number(middle)}'
+        )
     if severity == NOTE:
         advice = 'rounding, most likely: write the tensor with more digits'
         mended, with_what = _cut(inertial), 'with the largest moment cut to that sum'
@@ -116,8 +143,16 @@ def _triangle(case, entry, principal, inertial):
         effect = inertia_effect(case, entry.name, mended, with_what)
         if effect.share < NOTHING:
             severity = NOTE
-    return Hit(severity, 'triangle_inequality', entry.name, what, short, effect, advice,
-               min(excess, _FLAT))
+    return Hit(
+        severity,
+        'triangle_inequality',
+        entry.name,
+        what,
+        short,
+        effect,
+        advice,
+        min(excess, _FLAT),
+    )
 
 
 def _excess(ratio):
@@ -136,18 +171,24 @@ def _proposal(inertial):
         for factor in _FACTORS:
             for way in ways:
                 trial = tensor.copy()
-                trial[i, i] = tensor[i, i] * factor ** -way
+                trial[i, i] = tensor[i, i] * factor**-way
                 moments = np.linalg.eigvalsh(trial)
                 if moments[0] > 0.0 and moments[2] <= moments[0] + moments[1]:
                     name, size = _NAMES[i], 'large' if way > 0.0 else 'small'
                     entry = f'{name}="{trial[i, i]:.6g}"'
-                    return (changed(inertial, tensor=trial), f'with {entry}',
-                            f'a decimal point may be missing: {name}="{tensor[i, i]:.6g}" is '
-                            f'{factor:g} times too {size}, {entry} belongs to a real body; look '
-                            'into the CAD program')
-    return (_cut(inertial), 'with the largest moment cut to that sum',
-            'copy the tensor anew from the CAD program: about the centre of mass, in kg m^2, '
-            'ixy, ixz, iyz with their signs')
+                    return (
+                        changed(inertial, tensor=trial),
+                        f'with {entry}',
+                        f'a decimal point may be missing: {name}="{tensor[i, i]:.6g}" is '
+                        f'{factor:g} times too {size}, {entry} belongs to a real body; look '
+                        'into the CAD program',
+                    )
+    return (
+        _cut(inertial),
+        'with the largest moment cut to that sum',
+        'copy the tensor anew from the CAD program: about the centre of mass, in kg m^2, '
+        'ixy, ixz, iyz with their signs',
+    )
 
 
 def _cut(inertial):
@@ -187,13 +228,16 @@ def _mended_effect(case, link, mended):
         return UNKNOWN
     model = case.study.with_inertials({link: changed(mended, tensor=np.zeros((3, 3)))})
     share = np.nan_to_num(
-        1.0 - case.diagonal_of(model)[:, joints] / case.sampled_inertia[:, joints])
+        1.0 - case.diagonal_of(model)[:, joints] / case.sampled_inertia[:, joints]
+    )
     place = np.unravel_index(int(np.argmax(share)), share.shape)
     name = case.study.model.joint_names[joints[place[1]]]
     return Effect(
         f'the tensor is up to {percent(float(share[place]))} of the inertia (D_jj) that joint '
         f"'{name}' feels, if its signs are made positive; as it stands RobotModel and the node "
-        'refuse the robot', float(share[place]))
+        'refuse the robot',
+        float(share[place]),
+    )
 
 
 def is_too_large(case, entry):
@@ -212,8 +256,7 @@ def is_too_large(case, entry):
 
     """
     gyration = math.sqrt(max(0.0, entry.principal_moments[2]) / entry.mass)
-    return (gyration > _LARGE * case.size(entry.name) and gyration
-            > _OF_REACH * case.reach > 0.0)
+    return gyration > _LARGE * case.size(entry.name) and gyration > _OF_REACH * case.reach > 0.0
 
 
 def _too_large(case, entry, principal, inertial):
@@ -221,7 +264,9 @@ def _too_large(case, entry, principal, inertial):
     size = max(case.size(entry.name), 0.05)
     ball = changed(inertial, tensor=0.4 * entry.mass * size**2 * np.eye(3))
     return Hit(
-        WARNING, 'inertia_too_large', entry.name,
+        WARNING,
+        'inertia_too_large',
+        entry.name,
         f"link '{entry.name}' has {number(principal[2])} kg m^2 at {number(entry.mass)} kg, as if "
         f'its mass were {number(gyration)} m from its centre; as far as joints and centre of mass '
         f'tell it goes {number(case.size(entry.name))} m',
@@ -229,7 +274,9 @@ def _too_large(case, entry, principal, inertial):
         f'{number(case.size(entry.name))} m',
         inertia_effect(case, entry.name, ball, f'as a ball of {number(size)} m radius'),
         'URDF has kg m^2: g mm^2 are 1e-9 and kg mm^2 are 1e-6 of it, lb in^2 2.93e-4; look for '
-        'a missing decimal point too', gyration / size)
+        'a missing decimal point too',
+        gyration / size,
+    )
 
 
 def _is_about_frame(inertial):
@@ -242,8 +289,10 @@ def _is_about_frame(inertial):
     if not moments[0] > 0.0 or moments[2] > moments[0] + moments[1]:
         return False
     products = _products(tensor)
-    return bool(products > _SMALL_PRODUCTS * np.trace(tensor)
-                and _products(without) < _EXPLAINED * products)
+    return bool(
+        products > _SMALL_PRODUCTS * np.trace(tensor)
+        and _products(without) < _EXPLAINED * products
+    )
 
 
 def _about_frame(case, entry, inertial):
@@ -251,17 +300,25 @@ def _about_frame(case, entry, inertial):
     rotation = inertial.placement[:3, :3]
     without = _in_link(inertial) - steiner(np.zeros((3, 3)), inertial.mass, com)
     before, after = _products(_in_link(inertial)), _products(without)
-    effect = inertia_effect(case, entry.name,
-                            changed(inertial, tensor=rotation.T @ without @ rotation),
-                            'with the tensor moved to the centre of mass')
+    effect = inertia_effect(
+        case,
+        entry.name,
+        changed(inertial, tensor=rotation.T @ without @ rotation),
+        'with the tensor moved to the centre of mass',
+    )
     return Hit(
-        NOTE if effect.share < _WARNS else WARNING, 'tensor_not_about_com', entry.name,
+        NOTE if effect.share < _WARNS else WARNING,
+        'tensor_not_about_com',
+        entry.name,
         f"link '{entry.name}': its tensor seems to be about the link frame: moved to the centre "
         f'of mass (Steiner), its products of inertia go from {number(before)} to '
-        f'{number(after)} kg m^2', f'{number(before)} to {number(after)} kg m^2',
+        f'{number(after)} kg m^2',
+        f'{number(before)} to {number(after)} kg m^2',
         effect,
         'URDF wants the tensor about the centre of mass, in the axes of <origin rpy>: take that '
-        'one from the CAD program', before)
+        'one from the CAD program',
+        before,
+    )
 
 
 def _in_link(inertial):

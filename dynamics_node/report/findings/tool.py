@@ -9,11 +9,15 @@ from .kinds import NOTE, WARNING
 from .words import names, number
 from ..report import Finding
 
-_TOOL = re.compile(r'gripper|(^|_)hand|finger|jaw|claw|suction|vacuum|pinch|robotiq|2f_?85|'
-                   r'effector|eef|tool|tcp|flange|attach|palm|(^|_)ee($|_)', re.IGNORECASE)
+_TOOL = re.compile(
+    r'gripper|(^|_)hand|finger|jaw|claw|suction|vacuum|pinch|robotiq|2f_?85|'
+    r'effector|eef|tool|tcp|flange|attach|palm|(^|_)ee($|_)',
+    re.IGNORECASE,
+)
 # What is no gripper whatever else its name says.
-_NO_TOOL = re.compile(r'foot|sole|ankle|toe|leg|wheel|head|neck|camera|imu|laser|contact',
-                      re.IGNORECASE)
+_NO_TOOL = re.compile(
+    r'foot|sole|ankle|toe|leg|wheel|head|neck|camera|imu|laser|contact', re.IGNORECASE
+)
 # A chain of so many joints is an arm.
 _ARM = 4
 _KILOGRAM = 1.0
@@ -54,8 +58,13 @@ def _last_joints(case):
         depth, above = 1, parent
         while above is not None:
             depth, above = depth + 1, case.body_parent[above]
-        if (depth >= _ARM and len(siblings) == 1 and joint.mimics is None
-                and joint.kind != 'prismatic' and not _TOOL.search(joint.name + joint.child)):
+        if (
+            depth >= _ARM
+            and len(siblings) == 1
+            and joint.mimics is None
+            and joint.kind != 'prismatic'
+            and not _TOOL.search(joint.name + joint.child)
+        ):
             last.append(joint)
     return last
 
@@ -66,16 +75,24 @@ def _finding(case, joint, entry, tools, shaped):
     limit = float(case.study.model.effort_limits[index])
     share = '' if np.isnan(limit) else f', {number(100.0 * torque / limit)} % of its limit'
     if shaped:
-        what = (f"behind the last joint '{joint.name}' {names([e.name for e in shaped])} can be "
-                'seen without any mass: the gripper is missing')
+        what = (
+            f"behind the last joint '{joint.name}' {names([e.name for e in shaped])} can be "
+            'seen without any mass: the gripper is missing'
+        )
     else:
-        what = (f"behind the last joint '{joint.name}' there is no tool that weighs something: "
-                f'the arm ends in {names([e.name for e in tools] or [entry.name])}')
+        what = (
+            f"behind the last joint '{joint.name}' there is no tool that weighs something: "
+            f'the arm ends in {names([e.name for e in tools] or [entry.name])}'
+        )
     subjects = (entry.name, *(other.name for other in tools if other is not entry))
     return Finding(
-        WARNING if shaped else NOTE, 'missing_gripper', subjects, what,
+        WARNING if shaped else NOTE,
+        'missing_gripper',
+        subjects,
+        what,
         f"a gripper of 1 kg at '{entry.name}' adds up to {number(torque)} "
         f"{unit_of(case, most)} to joint '{most}'{share}; until it is known, that is missing in "
         'the gravity torque',
         'add its <inertial> to the URDF, or tell the node: parameters payload.link: '
-        f'{entry.name}, payload.mass, payload.com')
+        f'{entry.name}, payload.mass, payload.com',
+    )

@@ -64,15 +64,17 @@ def page(report):
         blob = f'<script type="application/json" id="data">{script_data(data)}</script>\n'
         scripts.insert(0, _plotly())
     sections = '\n'.join(_sections(report, is_drawn=bool(data)))
-    return (f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-            f'<meta http-equiv="Content-Security-Policy" content="{_policy(scripts)}">\n'
-            '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-            f'<title>{text(report.robot)}: model report</title>\n'
-            f'<style>\n{_file("style.css")}</style>\n</head>\n<body>\n'
-            f'{summary(report)}\n{_navigation(report, bool(data))}\n'
-            f'<main>\n{sections}\n</main>\n{_foot(report, bool(data))}\n{blob}'
-            + '\n'.join(f'<script>{script}</script>' for script in scripts)
-            + '\n</body>\n</html>\n')
+    return (
+        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{_policy(scripts)}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f'<title>{text(report.robot)}: model report</title>\n'
+        f'<style>\n{_file("style.css")}</style>\n</head>\n<body>\n'
+        f'{summary(report)}\n{_navigation(report, bool(data))}\n'
+        f'<main>\n{sections}\n</main>\n{_foot(report, bool(data))}\n{blob}'
+        + '\n'.join(f'<script>{script}</script>' for script in scripts)
+        + '\n</body>\n</html>\n'
+    )
 
 
 def _file(name):
@@ -94,10 +96,13 @@ def _policy(scripts):
     """
     allowed = ' '.join(
         f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
-        for script in scripts)
+        for script in scripts
+    )
     # plotly writes styles, and draws a picture of a plot for those who want to save one.
-    return (f"default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; "
-            "img-src data: blob:; base-uri 'none'; form-action 'none'")
+    return (
+        f"default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; "
+        "img-src data: blob:; base-uri 'none'; form-action 'none'"
+    )
 
 
 def _navigation(report, is_drawn):
@@ -123,36 +128,52 @@ def _sections(report, is_drawn):
         yield _file('gravity.html')
     if report.joints:
         yield _section(
-            'joints', 'Joints', 'What each joint can do, and the most that gravity asks of it. '
+            'joints',
+            'Joints',
+            'What each joint can do, and the most that gravity asks of it. '
             'Payload left: the point mass that may hang at the payload point in that pose until '
-            'this joint is at its limit.', joints_table(report.joints, report.joint_names))
+            'this joint is at its limit.',
+            joints_table(report.joints, report.joint_names),
+        )
     if report.payload is not None and report.conditioning is not None:
         yield (f'<div class="pair">{payload_section(report)}{conditioning_section(report)}</div>')
     if report.bodies:
         plot = '<div class="scroll"><div class="plot" id="plot-mass"></div></div>'
         yield _section(
-            'bodies', 'Bodies', 'What each joint moves as one piece: its link with everything '
+            'bodies',
+            'Bodies',
+            'What each joint moves as one piece: its link with everything '
             'that fixed joints attach to it.',
-            (plot if is_drawn else '') + bodies_table(report.bodies))
+            (plot if is_drawn else '') + bodies_table(report.bodies),
+        )
     if report.links:
         yield _section(
-            'links', 'Links', 'As they stand in the URDF. Principal moments are about the centre '
-            'of mass.', links_table(report.links))
+            'links',
+            'Links',
+            'As they stand in the URDF. Principal moments are about the centre of mass.',
+            links_table(report.links),
+        )
 
 
 def _section(identifier, title, lead, content):
-    return (f'<section id="{identifier}"><h2>{title}</h2><p class="quiet">{lead}</p>'
-            f'{content}</section>')
+    return (
+        f'<section id="{identifier}"><h2>{title}</h2><p class="quiet">{lead}</p>'
+        f'{content}</section>'
+    )
 
 
 def _foot(report, is_drawn):
     how = ''
     if report.payload is not None:
-        how = (f'Worst torques: {count(report.samples, "pose")} drawn evenly within the limits '
-               f'(seed {report.seed}), then climbed to the top. ')
+        how = (
+            f'Worst torques: {count(report.samples, "pose")} drawn evenly within the limits '
+            f'(seed {report.seed}), then climbed to the top. '
+        )
     root = f'Base frame: {span(report.root)}. ' if report.root else ''
-    return (f'<footer>{how}Gravity {text(vector(report.gravity))} m/s² '
-            f'({text(number(sum(value**2 for value in report.gravity)**0.5))}). {root}'
-            'Made by dynamics_node; this page asks the network for nothing.'
-            + (' Plots: plotly.js, © Plotly, Inc., MIT licence.' if is_drawn else '')
-            + '</footer>')
+    return (
+        f'<footer>{how}Gravity {text(vector(report.gravity))} m/s² '
+        f'({text(number(sum(value**2 for value in report.gravity) ** 0.5))}). {root}'
+        'Made by dynamics_node; this page asks the network for nothing.'
+        + (' Plots: plotly.js, © Plotly, Inc., MIT licence.' if is_drawn else '')
+        + '</footer>'
+    )

@@ -37,21 +37,33 @@ def page_data(report):
             'joint': {
                 'names': [joint.name for joint in joints],
                 'first': _first(joints),
-                'curves': [curve_figure(joint, joint.gravity.position[place])
-                           for place, joint in enumerate(joints)],
-                'histograms': [histogram_figure(joint) for joint in joints]}},
+                'curves': [
+                    curve_figure(joint, joint.gravity.position[place])
+                    for place, joint in enumerate(joints)
+                ],
+                'histograms': [histogram_figure(joint) for joint in joints],
+            },
+        },
         'arm': {
-            'robot': scene(report.model), 'poses': poses(report),
+            'robot': scene(report.model),
+            'poses': poses(report),
             'labels': {
                 'joints': [plot_text(body.joint) for body in report.bodies],
-                'bodies': [f'{plot_text(body.link)}<br>{number(body.mass)} kg<br>'
-                           f'centre of mass {vector(body.com, 3)} m'
-                           for body in report.bodies]}}}
+                'bodies': [
+                    f'{plot_text(body.link)}<br>{number(body.mass)} kg<br>'
+                    f'centre of mass {vector(body.com, 3)} m'
+                    for body in report.bodies
+                ],
+            },
+        },
+    }
 
 
 def _first(joints):
     """Return the place of the joint nearest to its limit, or of that with the largest torque."""
+
     def strain(place):
         load = joints[place].gravity
         return (load.share if load.share == load.share else -1.0, load.magnitude)
+
     return max(range(len(joints)), key=strain)

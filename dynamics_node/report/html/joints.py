@@ -27,11 +27,18 @@ def joints_table(joints, names):
 
     """
     unit = ' or '.join(sorted({joint.effort_unit for joint in joints}, reverse=True))
-    columns = (Column('joint'), Column('kind'), Column('range'),
-               Column('worst gravity torque', unit, True), Column('effort limit', unit, True),
-               Column('share of the limit', '', True), Column('payload left there', 'kg', True),
-               Column('velocity limit', 'per s', True),
-               Column('friction', 'dry, viscous', True), Column('worst at'))
+    columns = (
+        Column('joint'),
+        Column('kind'),
+        Column('range'),
+        Column('worst gravity torque', unit, True),
+        Column('effort limit', unit, True),
+        Column('share of the limit', '', True),
+        Column('payload left there', 'kg', True),
+        Column('velocity limit', 'per s', True),
+        Column('friction', 'dry, viscous', True),
+        Column('worst at'),
+    )
     slides = {joint.name: joint.kind == 'prismatic' for joint in joints}
     return table('joints', columns, [_joint(joint, names, slides) for joint in joints])
 
@@ -54,9 +61,18 @@ def _joint(joint, names, slides):
     velocity = amount(joint.velocity)
     if math.isfinite(joint.velocity):
         velocity = Cell(position(joint.velocity, is_prismatic), joint.velocity)
-    return (name(joint.name), words(kind), _range(joint, is_prismatic), worst, limit, share, left,
-            velocity, Cell(text(f'{number(joint.friction, 3)}, {number(joint.damping, 3)}'),
-                           joint.friction), where)
+    return (
+        name(joint.name),
+        words(kind),
+        _range(joint, is_prismatic),
+        worst,
+        limit,
+        share,
+        left,
+        velocity,
+        Cell(text(f'{number(joint.friction, 3)}, {number(joint.damping, 3)}'), joint.friction),
+        where,
+    )
 
 
 def _range(joint, is_prismatic):
@@ -72,12 +88,17 @@ def _share(share):
     # The width of the bar inside its meter; all of it when the limit is reached.
     name_of_tone = _TONES[tone(share)]
     width = 100.0 * min(share, 1.0)
-    return Cell(f'<span class="meter"><i class="{name_of_tone}" style="width:{width:.1f}%"></i>'
-                f'</span>{percent(share)}', share, name_of_tone)
+    return Cell(
+        f'<span class="meter"><i class="{name_of_tone}" style="width:{width:.1f}%"></i>'
+        f'</span>{percent(share)}',
+        share,
+        name_of_tone,
+    )
 
 
 def _where(values, names, slides):
     lines = ', '.join(
         f'{span(joint)} {position(value, slides[joint])}'
-        for joint, value in zip(names, values, strict=True))
+        for joint, value in zip(names, values, strict=True)
+    )
     return f'<details><summary>pose</summary>{lines}</details>'

@@ -21,17 +21,32 @@ def mass_figure(bodies):
     """
     total = sum(body.mass for body in bodies)
     largest = max((body.mass for body in bodies), default=0.0) or 1.0
-    data = [{
-        'type': 'bar', 'orientation': 'h', 'y': list(range(len(bodies))),
-        'x': [body.mass for body in bodies], 'name': 'mass',
-        'text': [f'{number(body.mass, 3)} kg' for body in bodies], 'textposition': 'outside',
-        'textfont': {'size': 12, 'color': color('muted')}, 'cliponaxis': False,
-        'hoverinfo': 'text', 'hovertext': [_sentence(body, total) for body in bodies],
-        'marker': {'color': [color('mass' if body.is_physical else 'problem')
-                             for body in bodies]}}]
-    return {'data': data, 'height': ROW * len(bodies) + MARGINS,
-            'layout': layout(yaxis=rows([body.link for body in bodies]),
-                             xaxis=axis('mass [kg]', range=[0, 1.25 * largest]))}
+    data = [
+        {
+            'type': 'bar',
+            'orientation': 'h',
+            'y': list(range(len(bodies))),
+            'x': [body.mass for body in bodies],
+            'name': 'mass',
+            'text': [f'{number(body.mass, 3)} kg' for body in bodies],
+            'textposition': 'outside',
+            'textfont': {'size': 12, 'color': color('muted')},
+            'cliponaxis': False,
+            'hoverinfo': 'text',
+            'hovertext': [_sentence(body, total) for body in bodies],
+            'marker': {
+                'color': [color('mass' if body.is_physical else 'problem') for body in bodies]
+            },
+        }
+    ]
+    return {
+        'data': data,
+        'height': ROW * len(bodies) + MARGINS,
+        'layout': layout(
+            yaxis=rows([body.link for body in bodies]),
+            xaxis=axis('mass [kg]', range=[0, 1.25 * largest]),
+        ),
+    }
 
 
 def _sentence(body, total):

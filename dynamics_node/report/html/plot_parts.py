@@ -29,29 +29,64 @@ def rows(names):
 
     """
     count = len(names)
-    return {'type': 'linear', 'tickmode': 'array', 'tickvals': list(range(count)),
-            'ticktext': [short(name) for name in names], 'range': [count - 0.4, -0.6],
-            'ticks': '', 'zeroline': False, 'showgrid': False, 'automargin': True,
-            'fixedrange': True, 'color': color('ink'), 'tickfont': {'size': 12}}
+    return {
+        'type': 'linear',
+        'tickmode': 'array',
+        'tickvals': list(range(count)),
+        'ticktext': [short(name) for name in names],
+        'range': [count - 0.4, -0.6],
+        'ticks': '',
+        'zeroline': False,
+        'showgrid': False,
+        'automargin': True,
+        'fixedrange': True,
+        'color': color('ink'),
+        'tickfont': {'size': 12},
+    }
 
 
 def axis(title, **more):
     """Return a horizontal or vertical axis of numbers."""
-    return {'type': 'linear', 'title': {'text': title, 'font': {'size': 12}},
-            'gridcolor': color('grid'), 'zerolinecolor': color('line'), 'zerolinewidth': 1,
-            'linecolor': color('line'),
-            'color': color('muted'), 'automargin': True, 'tickfont': {'size': 12}, **more}
+    return {
+        'type': 'linear',
+        'title': {'text': title, 'font': {'size': 12}},
+        'gridcolor': color('grid'),
+        'zerolinecolor': color('line'),
+        'zerolinewidth': 1,
+        'linecolor': color('line'),
+        'color': color('muted'),
+        'automargin': True,
+        'tickfont': {'size': 12},
+        **more,
+    }
 
 
 def layout(**more):
     """Return the frame of a plot."""
-    return {'paper_bgcolor': 'rgba(0,0,0,0)', 'plot_bgcolor': 'rgba(0,0,0,0)',
-            'font': {'color': color('ink'), 'size': 13,
-                     'family': 'system-ui, -apple-system, Segoe UI, Roboto, Noto Sans, Arial'},
-            'margin': {'l': 10, 'r': 14, 't': 12, 'b': 44}, 'showlegend': False,
-            'hoverlabel': {'bgcolor': color('raised'), 'bordercolor': color('line'),
-                           'font': {'color': color('ink')}, 'align': 'left', 'namelength': -1},
-            'modebar': {'bgcolor': 'rgba(0,0,0,0)', 'color': color('faint'),
-                        'activecolor': color('accent')},
-            # A finger that scrolls the page must not zoom into a plot.
-            'dragmode': False, 'bargap': 0.38, **more}
+    return {
+        'paper_bgcolor': 'rgba(0,0,0,0)',
+        'plot_bgcolor': 'rgba(0,0,0,0)',
+        'font': {
+            'color': color('ink'),
+            'size': 13,
+            'family': 'system-ui, -apple-system, Segoe UI, Roboto, Noto Sans, Arial',
+        },
+        'margin': {'l': 10, 'r': 14, 't': 12, 'b': 44},
+        'showlegend': False,
+        'hoverlabel': {
+            'bgcolor': color('raised'),
+            'bordercolor': color('line'),
+            'font': {'color': color('ink')},
+            'align': 'left',
+            'namelength': -1,
+        },
+        'modebar': {
+            'bgcolor': 'rgba(0,0,0,0)',
+            'color': color('faint'),
+            'activecolor': color('accent'),
+        },
+        # A finger that scrolls the page must not zoom into a plot.
+        'dragmode': False,
+        'bargap': 0.38,
+        **more,
+    }

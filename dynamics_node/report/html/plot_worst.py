@@ -38,37 +38,80 @@ def worst_figure(joints):
     torques = [joint.gravity.magnitude for joint in joints]
     limits = [joint.effort for joint in joints]
     hover = [plot_text(_sentence(joint)).replace('\n', '<br>') for joint in joints]
-    bar: dict[str, Any] = {'type': 'bar', 'orientation': 'h', 'y': places, 'hovertext': hover,
-           'hoverinfo': 'text', 'marker': {'color': [color(tone(share)) for share in shares]},
-           'textposition': 'outside', 'cliponaxis': False,
-           'textfont': {'size': 12, 'color': color('muted')}}
-    of_limit = {**bar, 'name': 'share', 'x': [_finite(100.0 * share, 0.0) for share in shares],
-                'text': [plot_text(_share_label(joint)) for joint in joints]}
-    plain = {**bar, 'name': 'torque', 'x': torques,
-             'text': [plot_text(_torque_label(joint)) for joint in joints]}
-    marks = {'type': 'scatter', 'mode': 'markers', 'name': 'limit', 'y': places,
-             'x': [_finite(limit) for limit in limits], 'hoverinfo': 'skip',
-             'marker': {'symbol': 'line-ns', 'size': 17, 'color': color('ink'),
-                        'line': {'width': 2.5, 'color': color('ink')}}}
+    bar: dict[str, Any] = {
+        'type': 'bar',
+        'orientation': 'h',
+        'y': places,
+        'hovertext': hover,
+        'hoverinfo': 'text',
+        'marker': {'color': [color(tone(share)) for share in shares]},
+        'textposition': 'outside',
+        'cliponaxis': False,
+        'textfont': {'size': 12, 'color': color('muted')},
+    }
+    of_limit = {
+        **bar,
+        'name': 'share',
+        'x': [_finite(100.0 * share, 0.0) for share in shares],
+        'text': [plot_text(_share_label(joint)) for joint in joints],
+    }
+    plain = {
+        **bar,
+        'name': 'torque',
+        'x': torques,
+        'text': [plot_text(_torque_label(joint)) for joint in joints],
+    }
+    marks = {
+        'type': 'scatter',
+        'mode': 'markers',
+        'name': 'limit',
+        'y': places,
+        'x': [_finite(limit) for limit in limits],
+        'hoverinfo': 'skip',
+        'marker': {
+            'symbol': 'line-ns',
+            'size': 17,
+            'color': color('ink'),
+            'line': {'width': 2.5, 'color': color('ink')},
+        },
+    }
     largest = max([100.0 * share for share in shares if math.isfinite(share)], default=0.0)
-    share_axis = axis('% of the effort limit', range=[0, 1.3 * max(largest, 78.0)],
-                      rangemode='tozero')
+    share_axis = axis(
+        '% of the effort limit', range=[0, 1.3 * max(largest, 78.0)], rangemode='tozero'
+    )
     torque_axis = axis(_torque_title(joints), range=[0, _torque_end(torques, limits)])
-    line = {'type': 'line', 'x0': 100, 'x1': 100, 'y0': 0, 'y1': 1, 'yref': 'paper',
-            'line': {'color': color('ink'), 'width': 1.5, 'dash': 'dot'}}
+    line = {
+        'type': 'line',
+        'x0': 100,
+        'x1': 100,
+        'y0': 0,
+        'y1': 1,
+        'yref': 'paper',
+        'line': {'color': color('ink'), 'width': 1.5, 'dash': 'dot'},
+    }
     modes: list[dict[str, Any]] = [
-        {'label': 'share of the limit', 'visible': [True, False, False],
-         'layout': {'xaxis': share_axis, 'shapes': [line]}},
-        {'label': 'torque', 'visible': [False, True, True],
-         'layout': {'xaxis': torque_axis, 'shapes': []}}]
+        {
+            'label': 'share of the limit',
+            'visible': [True, False, False],
+            'layout': {'xaxis': share_axis, 'shapes': [line]},
+        },
+        {
+            'label': 'torque',
+            'visible': [False, True, True],
+            'layout': {'xaxis': torque_axis, 'shapes': []},
+        },
+    ]
     # Without a single limit there are no shares to show.
     modes = modes if any(math.isfinite(share) for share in shares) else modes[1:]
     data: list[dict[str, Any]] = [of_limit, plain, marks]
     for trace, is_visible in zip(data, modes[0]['visible'], strict=True):
         trace['visible'] = is_visible
-    return {'data': data, 'height': ROW * len(joints) + MARGINS, 'modes': modes,
-            'layout': layout(yaxis=rows([joint.name for joint in joints]),
-                             **modes[0]['layout'])}
+    return {
+        'data': data,
+        'height': ROW * len(joints) + MARGINS,
+        'modes': modes,
+        'layout': layout(yaxis=rows([joint.name for joint in joints]), **modes[0]['layout']),
+    }
 
 
 def _torque_end(torques, limits):
@@ -105,6 +148,7 @@ def _sentence(joint):
     if math.isnan(joint.effort):
         lines.append('no effort limit')
     else:
-        lines.append(f'limit {quantity(joint.effort, joint.effort_unit)}, '
-                     f'{percent(load.share)} of it')
+        lines.append(
+            f'limit {quantity(joint.effort, joint.effort_unit)}, {percent(load.share)} of it'
+        )
     return '\n'.join(lines)

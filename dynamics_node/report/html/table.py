@@ -61,8 +61,11 @@ def name(value):
 def amount(value, digits=4, tone=''):
     """Return a cell with a number; '–' where there is none."""
     value = math.nan if value is None else value
-    return Cell(text(number(value, digits)), float(value),
-                'missing' if math.isnan(value) and not tone else tone)
+    return Cell(
+        text(number(value, digits)),
+        float(value),
+        'missing' if math.isnan(value) and not tone else tone,
+    )
 
 
 def table(label, columns, lines):
@@ -84,11 +87,15 @@ def table(label, columns, lines):
     """
     head = ''.join(
         f'<th scope="col"{_numeric(column)}><span class="title">{text(column.title)}</span>'
-        + (f' <span class="unit">{text(column.unit)}</span>' if column.unit else '') + '</th>'
-        for column in columns)
+        + (f' <span class="unit">{text(column.unit)}</span>' if column.unit else '')
+        + '</th>'
+        for column in columns
+    )
     body = '\n'.join(f'<tr>{_line(columns, line)}</tr>' for line in lines)
-    return (f'<div class="table"><table aria-label="{text(label)}"><thead><tr>{head}</tr></thead>'
-            f'<tbody>\n{body}\n</tbody></table></div>')
+    return (
+        f'<div class="table"><table aria-label="{text(label)}"><thead><tr>{head}</tr></thead>'
+        f'<tbody>\n{body}\n</tbody></table></div>'
+    )
 
 
 def _numeric(column):
@@ -97,8 +104,9 @@ def _numeric(column):
 
 def _line(columns, line):
     first, *others = zip(columns, line, strict=True)
-    return (f'<th scope="row"{_sorted_by(first[1])}>{first[1].markup}</th>'
-            + ''.join(_cell(column, cell) for column, cell in others))
+    return f'<th scope="row"{_sorted_by(first[1])}>{first[1].markup}</th>' + ''.join(
+        _cell(column, cell) for column, cell in others
+    )
 
 
 def _cell(column, cell):

@@ -30,8 +30,13 @@ def table(*columns):
 
 def link_table(report):
     """Return the links that have an <inertial>, or a shape without one."""
-    made = table(('link', 'left'), ('kg', 'right'), ('centre of mass, m', 'right'),
-                 ('principal moments, kg m²', 'right'), ('', 'left'))
+    made = table(
+        ('link', 'left'),
+        ('kg', 'right'),
+        ('centre of mass, m', 'right'),
+        ('principal moments, kg m²', 'right'),
+        ('', 'left'),
+    )
     for link in report.links:
         if not (link.has_inertial or link.has_shape) or not _weighs(link):
             continue
@@ -40,9 +45,13 @@ def link_table(report):
             remark = 'weighs nothing'
         elif link.carrier is None and report.verdict == 'usable':
             remark = remark or 'on the base'
-        made.add_row(Text(link.name), short(link.mass), vector(link.com),
-                     shorts(link.principal_moments),
-                     Text(remark, style='red' if not link.is_physical else 'dim'))
+        made.add_row(
+            Text(link.name),
+            short(link.mass),
+            vector(link.com),
+            shorts(link.principal_moments),
+            Text(remark, style='red' if not link.is_physical else 'dim'),
+        )
     return made
 
 
@@ -59,15 +68,20 @@ def body_table(report, width):
     """Return what each joint moves, with the links that fixed joints attach."""
     wide = width >= _WIDE
     more = [('centre of mass, m', 'right'), ('principal moments, kg m²', 'right')] if wide else []
-    made = table(('joint', 'left'), ('its link + what is fixed to it', 'left'), ('kg', 'right'),
-                 *more)
+    made = table(
+        ('joint', 'left'), ('its link + what is fixed to it', 'left'), ('kg', 'right'), *more
+    )
     frames = {link.name for link in report.links if not _weighs(link)}
     for body in report.bodies:
         lumped = [name for name in body.lumped if name not in frames]
         style = '' if body.is_physical else 'red'
         cells = [vector(body.com), shorts(body.principal_moments)] if wide else []
-        made.add_row(Text(body.joint), Text(' + '.join([body.link, *lumped])),
-                     Text(short(body.mass), style=style), *cells)
+        made.add_row(
+            Text(body.joint),
+            Text(' + '.join([body.link, *lumped])),
+            Text(short(body.mass), style=style),
+            *cells,
+        )
     return made
 
 

@@ -36,12 +36,15 @@ class _Console(Console):
 
 def _parts(report, width):
     yield Text(f'{report.robot}', style='bold')
-    yield Text(f'{report.source}' + (f", root link '{report.root}'" if report.root else ''),
-               style='dim')
+    yield Text(
+        f'{report.source}' + (f", root link '{report.root}'" if report.root else ''), style='dim'
+    )
     x, y, z = report.gravity
-    yield Text(f'{report.total_mass:.4g} kg, of which joints move {report.moving_mass:.4g} kg; '
-               f'{len(report.links)} links, {len(report.joints)} movable joints; gravity '
-               f'({x:g}, {y:g}, {z:g}) m/s²')
+    yield Text(
+        f'{report.total_mass:.4g} kg, of which joints move {report.moving_mass:.4g} kg; '
+        f'{len(report.links)} links, {len(report.joints)} movable joints; gravity '
+        f'({x:g}, {y:g}, {z:g}) m/s²'
+    )
     if report.links:
         yield from _titled('Links', link_table(report))
         frames = frames_line(report)
@@ -55,9 +58,11 @@ def _parts(report, width):
         if mimics is not None:
             yield mimics
     if report.joint_names:
-        yield from _titled(f'Largest gravity torque of each joint ({report.samples} positions, '
-                           f'seed {report.seed}, then climbed to the top)',
-                           gravity_table(report, width))
+        yield from _titled(
+            f'Largest gravity torque of each joint ({report.samples} positions, '
+            f'seed {report.seed}, then climbed to the top)',
+            gravity_table(report, width),
+        )
         yield from payload_lines(report)
     yield from findings(report, _COLOURS)
     yield Text()
@@ -71,10 +76,16 @@ def _titled(title, table):
 
 def _summary(report):
     counts = report.counts
-    said = ', '.join(f'{count} {severity}{"" if count == 1 else "s"}'
-                     for severity, count in counts.items())
+    said = ', '.join(
+        f'{count} {severity}{"" if count == 1 else "s"}' for severity, count in counts.items()
+    )
     worst = next((severity for severity, count in counts.items() if count), None)
-    verdict = ('refused: RobotModel and the node do not take it' if report.verdict == 'refused'
-               else 'not to be trusted' if worst == 'problem' else 'usable')
+    verdict = (
+        'refused: RobotModel and the node do not take it'
+        if report.verdict == 'refused'
+        else 'not to be trusted'
+        if worst == 'problem'
+        else 'usable'
+    )
     style = 'bold green' if worst in (None, 'note') else _COLOURS[worst]
     return Text(f'{report.robot}: {verdict}; {said}', style=style)

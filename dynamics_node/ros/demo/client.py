@@ -34,11 +34,15 @@ class Client:
         self._node.create_subscription(JointState, 'joint_states', recording.add, 100)
         self._node.create_subscription(OutputState, 'dynamics_node/state', self._on_state, LATCHED)
         services = {
-            'simulated_robot/set_brakes': SetBool, 'simulated_robot/reset': Trigger,
-            'simulated_robot/push': Trigger, 'dynamics_node/enable': SetBool,
-            'dynamics_node/get_mass_matrix': GetMassMatrix}
-        self._clients = {name: self._node.create_client(kind, name)
-                         for name, kind in services.items()}
+            'simulated_robot/set_brakes': SetBool,
+            'simulated_robot/reset': Trigger,
+            'simulated_robot/push': Trigger,
+            'dynamics_node/enable': SetBool,
+            'dynamics_node/get_mass_matrix': GetMassMatrix,
+        }
+        self._clients = {
+            name: self._node.create_client(kind, name) for name, kind in services.items()
+        }
 
     def wait_until_ready(self) -> None:
         """Wait until all endpoints are there and the node has said what its output does."""
@@ -58,10 +62,12 @@ class Client:
 
     def wait_for_state(self, name: str, timeout: float) -> None:
         """Wait for a state of the node's output; FAULT ends the waiting."""
+
         def reached() -> bool:
             if self.state is not None and self.state.name == 'FAULT' != name:
                 raise DemoError(f'the node reports FAULT: {self.state.reason}')
             return self.state is not None and self.state.name == name
+
         self.wait_for(reached, timeout, f'the node to be {name}')
 
     def spin_for(self, seconds: float) -> None:

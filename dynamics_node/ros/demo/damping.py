@@ -1,6 +1,5 @@
 """Viscous friction for joints whose URDF states practically none, as every real drive has it."""
 
-
 import numpy as np
 
 from .mujoco_arm import MujocoArm
@@ -17,12 +16,17 @@ SAMPLES = 200
 def add_missing_damping(arm: MujocoArm) -> list[str]:
     """Give joints without damping some, and return one text per joint that was changed."""
     turning = np.array([joint.turns for joint in arm.joints])
-    usual = np.maximum(OF_INERTIA * np.abs(arm.mimic_matrix) @ largest_inertia(arm),
-                       np.where(turning, OF_TORQUE * _largest_torque(arm), 0.0))
+    usual = np.maximum(
+        OF_INERTIA * np.abs(arm.mimic_matrix) @ largest_inertia(arm),
+        np.where(turning, OF_TORQUE * _largest_torque(arm), 0.0),
+    )
     before = arm.damping()
     arm.set_damping(np.where(before < NEGLIGIBLE * usual, usual, before))
-    return [f'{joint.name} {old:.3g} -> {new:.3g} {"N m s/rad" if joint.turns else "N s/m"}'
-            for joint, old, new in zip(arm.joints, before, arm.damping()) if new != old]
+    return [
+        f'{joint.name} {old:.3g} -> {new:.3g} {"N m s/rad" if joint.turns else "N s/m"}'
+        for joint, old, new in zip(arm.joints, before, arm.damping())
+        if new != old
+    ]
 
 
 def largest_inertia(arm: MujocoArm) -> np.ndarray:

@@ -59,11 +59,20 @@ def _options(arguments: list[str]) -> argparse.Namespace:
     """Return the command line's options."""
     parser = argparse.ArgumentParser(description=(__doc__ or '').strip().splitlines()[0])
     parser.add_argument('--robot', type=Path, help='a URDF file (default: arm7.urdf)')
-    parser.add_argument('--params-file', type=Path, metavar='FILE',
-                        help="parameters of the node; its joints must be the URDF's, in its order")
+    parser.add_argument(
+        '--params-file',
+        type=Path,
+        metavar='FILE',
+        help="parameters of the node; its joints must be the URDF's, in its order",
+    )
     parser.add_argument('--view', action='store_true', help='watch in the MuJoCo viewer')
-    parser.add_argument('--hold', type=float, default=10.0, metavar='SECONDS',
-                        help='how long the node holds the arm before the push (default: 10)')
+    parser.add_argument(
+        '--hold',
+        type=float,
+        default=10.0,
+        metavar='SECONDS',
+        help='how long the node holds the arm before the push (default: 10)',
+    )
     parser.add_argument('--output', type=Path, default=Path('demo.png'), help='the figure')
     return parser.parse_args(arguments)
 
@@ -76,16 +85,18 @@ def isolate() -> None:
 
 def _run(options: argparse.Namespace, console: Console) -> int:
     """Run the story between two processes, print and draw what came out."""
-    outcome, arm, name = perform(options.robot or arm7_path(), options.hold, options.view, console,
-                                 options.params_file)
+    outcome, arm, name = perform(
+        options.robot or arm7_path(), options.hold, options.view, console, options.params_file
+    )
     print_outcome(console, outcome)
     draw(outcome, arm, name, options.output)
     console.print(f'figure: {options.output}', markup=False)
     return _verdict(outcome, console)
 
 
-def perform(path: Path, hold: float, view: bool, console: Console,
-            params_file: Path | None = None) -> tuple[Outcome, MujocoArm, str]:
+def perform(
+    path: Path, hold: float, view: bool, console: Console, params_file: Path | None = None
+) -> tuple[Outcome, MujocoArm, str]:
     """
     Tell the story to the robot of a URDF file.
 
@@ -121,8 +132,10 @@ def perform(path: Path, hold: float, view: bool, console: Console,
     """
     text = read_robot(path)
     arm, name = MujocoArm(text), robot_name(text)
-    console.print(f'[bold]{name}[/bold], driven joints: {len(arm.driven)}, simulated '
-                  f'by MuJoCo, held by dynamics_node (domain {os.environ["ROS_DOMAIN_ID"]})')
+    console.print(
+        f'[bold]{name}[/bold], driven joints: {len(arm.driven)}, simulated '
+        f'by MuJoCo, held by dynamics_node (domain {os.environ["ROS_DOMAIN_ID"]})'
+    )
     with Processes() as processes:
         try:
             _start(processes, path, arm, view, console, params_file)
@@ -132,12 +145,23 @@ def perform(path: Path, hold: float, view: bool, console: Console,
             raise
 
 
-def _start(processes: Processes, path: Path, arm: MujocoArm, view: bool,
-           console: Console, params_file: Path | None) -> None:
+def _start(
+    processes: Processes,
+    path: Path,
+    arm: MujocoArm,
+    view: bool,
+    console: Console,
+    params_file: Path | None,
+) -> None:
     """Start the simulated robot and the node."""
-    processes.start('simulated_robot', 'dynamics_node.ros.demo.simulated_robot',
-                    *(['--view'] if view else []),
-                    '--ros-args', '-p', f'robot_description_file:={path.resolve()}')
+    processes.start(
+        'simulated_robot',
+        'dynamics_node.ros.demo.simulated_robot',
+        *(['--view'] if view else []),
+        '--ros-args',
+        '-p',
+        f'robot_description_file:={path.resolve()}',
+    )
     parameters = ['--ros-args', '-p', f'state_timeout:={STATE_TIMEOUT}']
     missing = joints_without_limit(arm)
     if params_file is not None:
@@ -145,9 +169,11 @@ def _start(processes: Processes, path: Path, arm: MujocoArm, view: bool,
     elif missing:
         limits = ', '.join(f'{limit:.1f}' for limit in filled_in_limits(arm))
         parameters += ['-p', f'effort_limits:=[{limits}]']
-        console.print(f'The URDF states no effort limit for {", ".join(missing)}, and the node '
-                      'enables nothing without one: it gets twice the largest gravity torque '
-                      f'that MuJoCo finds, effort_limits = ({limits}) N m or N.')
+        console.print(
+            f'The URDF states no effort limit for {", ".join(missing)}, and the node '
+            'enables nothing without one: it gets twice the largest gravity torque '
+            f'that MuJoCo finds, effort_limits = ({limits}) N m or N.'
+        )
     processes.start('dynamics_node', 'dynamics_node.ros.main', *parameters)
 
 
@@ -171,8 +197,9 @@ def _tell(processes: Processes, arm: MujocoArm, hold: float, console: Console) -
         rclpy.try_shutdown()
 
 
-def _compare_mass_matrix(names: list[str], position: list[float], matrix: np.ndarray,
-                         arm: MujocoArm, console: Console) -> None:
+def _compare_mass_matrix(
+    names: list[str], position: list[float], matrix: np.ndarray, arm: MujocoArm, console: Console
+) -> None:
     """Hold the service's matrix, shape (n, n), against MuJoCo's own at the same position."""
     order = [arm.driven_names.index(name) for name in names]
     driven = np.zeros(len(order))
@@ -180,18 +207,26 @@ def _compare_mass_matrix(names: list[str], position: list[float], matrix: np.nda
     expected = arm.mass_matrix(driven)[np.ix_(order, order)]
     error = float(np.abs(matrix - expected).max() / np.abs(expected).max())
     if not error < MASS_MATRIX_TOLERANCE:
-        raise DemoError('the mass matrix of the service is not that of MuJoCo: they differ by '
-                        f'{error:.2g} of its largest entry')
+        raise DemoError(
+            'the mass matrix of the service is not that of MuJoCo: they differ by '
+            f'{error:.2g} of its largest entry'
+        )
     console.print(f'MuJoCo has the same: it differs by {error:.1g} of the largest entry')
 
 
 def _note_friction(arm: MujocoArm, console: Console) -> None:
     """Say where dry friction helps to hold the robot, because it does so without any torque."""
-    sticky = [f'{joint.name} {friction:g}' for joint, friction in zip(arm.joints, arm.friction())
-              if friction > 0.0]
+    sticky = [
+        f'{joint.name} {friction:g}'
+        for joint, friction in zip(arm.joints, arm.friction())
+        if friction > 0.0
+    ]
     if sticky:
-        console.print(f'note: the URDF states dry friction, {", ".join(sticky)} N m or N: it '
-                      'helps to hold still', markup=False)
+        console.print(
+            f'note: the URDF states dry friction, {", ".join(sticky)} N m or N: it '
+            'helps to hold still',
+            markup=False,
+        )
 
 
 def _pass_on_warnings(processes: Processes, console: Console) -> None:

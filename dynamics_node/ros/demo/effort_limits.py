@@ -1,6 +1,5 @@
 """Effort limits for robots whose URDF states none: the node rightly refuses to drive those."""
 
-
 import numpy as np
 
 from .mujoco_arm import MujocoArm

@@ -1,6 +1,5 @@
 """The way back to the start pose, as a robot travels it: without a jump."""
 
-
 import numpy as np
 
 from .robot_text import MovableJoint
@@ -18,8 +17,9 @@ class Glide:
 
     """
 
-    def __init__(self, start: np.ndarray, goal: np.ndarray, joints: list[MovableJoint],
-                 now: float) -> None:
+    def __init__(
+        self, start: np.ndarray, goal: np.ndarray, joints: list[MovableJoint], now: float
+    ) -> None:
         """Plan from `start` to `goal` [rad or m] within the velocity limits, from `now` [s]."""
         limits = np.array([joint.velocity or FALLBACK_VELOCITY for joint in joints])
         slowest = np.max(np.pi / 2 * np.abs(goal - start) / (SHARE_OF_LIMIT * limits))

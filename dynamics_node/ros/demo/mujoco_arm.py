@@ -14,8 +14,11 @@ from .glide import Glide
 from .mujoco_model import compile_model, last_link, mimic_map, TIME_STEP
 from .robot_text import movable_joints
 
-UNSTABLE = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL,
-            mujoco.mjtWarning.mjWARN_BADQACC)
+UNSTABLE = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
 
 
 class UnstableError(RuntimeError):
@@ -139,8 +142,10 @@ class MujocoArm:
         # MuJoCo itself would go on from its neutral position, as if nothing had happened.
         if any(self.data.warning[kind].number for kind in UNSTABLE):
             self.place(before)
-            raise UnstableError('the efforts were too large for the simulation, which became '
-                                'unstable; the brakes are engaged')
+            raise UnstableError(
+                'the efforts were too large for the simulation, which became '
+                'unstable; the brakes are engaged'
+            )
 
     def gravity_torque(self, driven: np.ndarray) -> np.ndarray:
         """Return MuJoCo's own gravity torque of the driven joints, (n_driven,) [N m or N]."""

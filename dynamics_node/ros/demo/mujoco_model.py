@@ -26,8 +26,10 @@ def compile_model(text: str, joints: list[MovableJoint]) -> mujoco.MjModel:
         if isinstance(error, RobotRefusedError):
             raise
         reason = ' '.join(str(error).split())
-        raise RobotRefusedError(f'MuJoCo cannot simulate this robot: {reason}; what is wrong with '
-                                'its links says python -m dynamics_node.report') from error
+        raise RobotRefusedError(
+            f'MuJoCo cannot simulate this robot: {reason}; what is wrong with '
+            'its links says python -m dynamics_node.report'
+        ) from error
 
 
 def mimic_map(joints: list[MovableJoint]) -> tuple[np.ndarray, np.ndarray]:
@@ -80,8 +82,9 @@ def _resolve(joint: MovableJoint, by_name: dict[str, MovableJoint]) -> tuple[str
         if mimic is None:
             return name, multiplier, offset
         if mimic.source not in by_name:
-            raise RobotRefusedError(f'joint {name!r} mimics {mimic.source!r}, '
-                                    'which is no movable joint')
+            raise RobotRefusedError(
+                f'joint {name!r} mimics {mimic.source!r}, which is no movable joint'
+            )
         offset += multiplier * mimic.offset
         name, multiplier = mimic.source, multiplier * mimic.multiplier
     raise RobotRefusedError(f'joint {joint.name!r} mimics itself in a circle')

@@ -12,16 +12,34 @@ from .recording import Phase
 from .story import FALL_TIME, Outcome, WATCH_TIME
 
 PHASE_COLORS = {
-    'falls, node off': '#f4b6ac', 'back to the start': '#e4e4e4', 'held by the node': '#bfe3c5',
-    'pushed': '#fbe3a6', 'held there': '#bfe3c5', 'ramps up': '#cfdff5',
-    'ramps down': '#cfdff5'}
+    'falls, node off': '#f4b6ac',
+    'back to the start': '#e4e4e4',
+    'held by the node': '#bfe3c5',
+    'pushed': '#fbe3a6',
+    'held there': '#bfe3c5',
+    'ramps up': '#cfdff5',
+    'ramps down': '#cfdff5',
+}
 POSE_COLORS = {
-    'start': '#3b3f46', 'after the fall': '#c8442f', 'held': '#2b8a3e',
-    'after the push': '#c98a00'}
+    'start': '#3b3f46',
+    'after the fall': '#c8442f',
+    'held': '#2b8a3e',
+    'after the push': '#c98a00',
+}
 LEAD_IN = 0.3  # [s] shown before the first phase
 NARROW = 0.12  # a phase shorter than this share of the run has no room for its name above it
-JOINT_COLORS = ['#1f4e9e', '#d1495b', '#2e9e6b', '#e08e1b', '#7a4fb5', '#2aa7b8', '#8c5a3c',
-                '#c653a2', '#6b7280', '#a3b018']
+JOINT_COLORS = [
+    '#1f4e9e',
+    '#d1495b',
+    '#2e9e6b',
+    '#e08e1b',
+    '#7a4fb5',
+    '#2aa7b8',
+    '#8c5a3c',
+    '#c653a2',
+    '#6b7280',
+    '#a3b018',
+]
 
 
 def draw(outcome: Outcome, arm: MujocoArm, name: str, path: Path) -> None:
@@ -40,11 +58,13 @@ def draw(outcome: Outcome, arm: MujocoArm, name: str, path: Path) -> None:
 
 def _title(outcome: Outcome, name: str) -> str:
     """Return the headline: the four figures."""
-    return (f'{name}: falls {outcome.largest(outcome.fall):.0f}° in {FALL_TIME:.0f} s '
-            'without the node, '
-            f'drifts {_small(outcome.largest(outcome.drift))} in {outcome.hold:.0f} s with it\n'
-            f'pushed by {outcome.largest(outcome.pushed):.0f}°, it stays there and drifts '
-            f'{_small(outcome.largest(outcome.drift_after_push))} in {WATCH_TIME:.0f} s')
+    return (
+        f'{name}: falls {outcome.largest(outcome.fall):.0f}° in {FALL_TIME:.0f} s '
+        'without the node, '
+        f'drifts {_small(outcome.largest(outcome.drift))} in {outcome.hold:.0f} s with it\n'
+        f'pushed by {outcome.largest(outcome.pushed):.0f}°, it stays there and drifts '
+        f'{_small(outcome.largest(outcome.drift_after_push))} in {WATCH_TIME:.0f} s'
+    )
 
 
 def _small(degrees: float) -> str:
@@ -55,9 +75,12 @@ def _small(degrees: float) -> str:
 def _draw_poses(axes: list[Any], outcome: Outcome, arm: MujocoArm) -> None:
     """Draw one stick figure per pose, all in one scale, seen from the side."""
     sticks = {pose: arm.skeleton(position) for pose, position in outcome.poses.items()}
-    titles = {'start': 'start', 'after the fall': f'node off: {FALL_TIME:.0f} s later',
-              'held': f'node on: {outcome.hold:.0f} s later',
-              'after the push': 'pushed: stays there'}
+    titles = {
+        'start': 'start',
+        'after the fall': f'node off: {FALL_TIME:.0f} s later',
+        'held': f'node on: {outcome.hold:.0f} s later',
+        'after the push': 'pushed: stays there',
+    }
     view = _side(sticks['start'][-1])
     flat = {pose: np.stack([stick @ view, stick[:, 2]], axis=1) for pose, stick in sticks.items()}
     points = np.vstack(list(flat.values()))
@@ -66,8 +89,11 @@ def _draw_poses(axes: list[Any], outcome: Outcome, arm: MujocoArm) -> None:
         axis.plot(*flat['start'].T, color='#b9bdc4', lw=5, solid_capstyle='round', zorder=1)
         _draw_stick(axis, stick, POSE_COLORS[pose])
         axis.set_title(titles[pose], color=POSE_COLORS[pose], fontsize=11, fontweight='bold')
-        axis.set(xlim=(middle[0] - half, middle[0] + half),
-                 ylim=(middle[1] - half, middle[1] + half), aspect='equal')
+        axis.set(
+            xlim=(middle[0] - half, middle[0] + half),
+            ylim=(middle[1] - half, middle[1] + half),
+            aspect='equal',
+        )
         axis.tick_params(labelsize=8)
         axis.grid(alpha=0.25)
     axes[0].set_ylabel('height [m]')
@@ -92,8 +118,10 @@ def _side(tip: np.ndarray) -> np.ndarray:
 def _draw_displacement(axis: Any, outcome: Outcome) -> None:
     """Draw how far every joint is from its start."""
     recording = outcome.recording
-    times, way = recording.times(), recording.natural(
-        recording.positions() - outcome.poses['start'])
+    times, way = (
+        recording.times(),
+        recording.natural(recording.positions() - outcome.poses['start']),
+    )
     for row, name in enumerate(recording.names):
         unit = '' if recording.turning[row] else ' [mm]'
         axis.plot(times, way[:, row], lw=1.8, color=_color(row), label=name + unit)
@@ -111,8 +139,11 @@ def _draw_effort(axis: Any, outcome: Outcome) -> None:
     for row in range(len(recording.names)):
         axis.plot(times, efforts[:, row], lw=1.5, color=_color(row))
     _shade(axis, recording.phases, wide=False)
-    axis.set(ylabel='motor effort [N m]', xlabel='time [s]',
-             xlim=(recording.phases[0].start - LEAD_IN, times[-1]))
+    axis.set(
+        ylabel='motor effort [N m]',
+        xlabel='time [s]',
+        xlim=(recording.phases[0].start - LEAD_IN, times[-1]),
+    )
     axis.grid(alpha=0.25)
 
 
@@ -123,10 +154,18 @@ def _shade(axis: Any, phases: list[Phase], wide: bool) -> None:
         axis.axvspan(phase.start, phase.end, color=PHASE_COLORS[phase.name], alpha=0.55, lw=0)
         if wide != (phase.end - phase.start > NARROW * total):
             continue
-        axis.text((phase.start + phase.end) / 2, 1.02 if wide else 0.04, phase.name, fontsize=9,
-                  ha='center', va='bottom', rotation=0 if wide else 90,
-                  transform=axis.get_xaxis_transform(), zorder=5,
-                  bbox=None if wide else {'facecolor': 'white', 'alpha': 0.6, 'lw': 0, 'pad': 1})
+        axis.text(
+            (phase.start + phase.end) / 2,
+            1.02 if wide else 0.04,
+            phase.name,
+            fontsize=9,
+            ha='center',
+            va='bottom',
+            rotation=0 if wide else 90,
+            transform=axis.get_xaxis_transform(),
+            zorder=5,
+            bbox=None if wide else {'facecolor': 'white', 'alpha': 0.6, 'lw': 0, 'pad': 1},
+        )
 
 
 def _color(row: int) -> str:

@@ -13,8 +13,12 @@ SHARE_OF_EFFORT = 0.8  # the pose must be held with this share of the effort lim
 
 # The demo's own arm: stretched forward, 30 degrees above the horizontal.
 KNOWN: dict[str, dict[str, float]] = {
-    'arm7': {'shoulder_pitch': 0.95, 'elbow_pitch': 0.35, 'wrist_pitch': 0.25,
-             'left_finger_slide': 0.02},
+    'arm7': {
+        'shoulder_pitch': 0.95,
+        'elbow_pitch': 0.35,
+        'wrist_pitch': 0.25,
+        'left_finger_slide': 0.02,
+    }
 }
 
 
@@ -36,7 +40,8 @@ def choose_pose(arm: MujocoArm) -> np.ndarray:
     if best is None:
         raise RobotRefusedError(
             'found no pose that gravity pulls down and that the effort limits can hold; give the '
-            'parameter start_pose, one value per driven joint')
+            'parameter start_pose, one value per driven joint'
+        )
     return best
 
 
@@ -69,7 +74,8 @@ def _score(arm: MujocoArm, pose: np.ndarray) -> float:
     fall = np.abs(torque) / np.diag(arm.mass_matrix(pose))
     # A distal link that swings fast alone is no fall: weigh by what the joint has to carry.
     return _room_below(arm.skeleton(pose)) * float(
-        np.max(np.where(turning, fall * np.abs(torque), 0.0)))
+        np.max(np.where(turning, fall * np.abs(torque), 0.0))
+    )
 
 
 def _room_below(points: np.ndarray) -> float:

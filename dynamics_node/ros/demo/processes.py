@@ -28,8 +28,12 @@ class Processes:
         """Enter the context."""
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
-                 traceback: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
         """End all processes, the last started first, and drop their logs."""
         for name in reversed(list(self._running)):
             self._end(self._running[name])
@@ -42,9 +46,13 @@ class Processes:
             # ends the processes in the right order. Unbuffered: their logs are read while they
             # run.
             self._running[name] = subprocess.Popen(
-                [sys.executable, '-m', module, *arguments], stdin=subprocess.DEVNULL,
-                stdout=log, stderr=subprocess.STDOUT, start_new_session=True,
-                env=self.environment())
+                [sys.executable, '-m', module, *arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                env=self.environment(),
+            )
 
     def environment(self) -> dict[str, str]:
         """Return the environment of the processes."""
@@ -54,8 +62,9 @@ class Processes:
         """Raise DemoError if a process has ended by itself."""
         for name, process in self._running.items():
             if process.poll() is not None:
-                raise DemoError(f'{name} ended by itself with exit code {process.returncode}; '
-                                'its log is above')
+                raise DemoError(
+                    f'{name} ended by itself with exit code {process.returncode}; its log is above'
+                )
 
     def tails(self) -> dict[str, list[str]]:
         """Return the last lines of every process's log."""

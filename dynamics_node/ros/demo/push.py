@@ -1,6 +1,5 @@
 """The push: a force at the last link that moves the arm some way and then lets it come to rest."""
 
-
 import numpy as np
 
 from .mujoco_arm import MujocoArm
@@ -36,8 +35,7 @@ def _directions(tip: np.ndarray) -> list[np.ndarray]:
     return [(s * side + u * up) / np.hypot(s, u) for s, u in pairs]
 
 
-def _way(arm: MujocoArm, driven: np.ndarray, direction: np.ndarray,
-         duration: float) -> np.ndarray:
+def _way(arm: MujocoArm, driven: np.ndarray, direction: np.ndarray, duration: float) -> np.ndarray:
     """Return how far a force of 1 N moves every driven joint, shape (n_driven,) [rad or m]."""
     torque = arm.last_link_jacobian(driven).T @ direction
     return torque * duration / _effective_damping(arm)

@@ -1,6 +1,5 @@
 """What the demo prints."""
 
-
 import numpy as np
 from rich import box
 from rich.console import Console
@@ -12,8 +11,10 @@ from .story import FALL_TIME, MAX_DRIFT, MIN_FALL, MIN_PUSH, Outcome, WATCH_TIME
 def print_mass_matrix(console: Console, names: list[str], matrix: np.ndarray) -> None:
     """Print a mass matrix, shape (n, n), with the names of the joints."""
     # Markup would take a unit in brackets for a style.
-    console.print('\nMass matrix D(q) at the start pose in kg m², kg m and kg, '
-                  'from /dynamics_node/get_mass_matrix:')
+    console.print(
+        '\nMass matrix D(q) at the start pose in kg m², kg m and kg, '
+        'from /dynamics_node/get_mass_matrix:'
+    )
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1))
     table.add_column('joint', no_wrap=True)
     for column in range(len(names)):
@@ -31,10 +32,11 @@ def print_outcome(console: Console, outcome: Outcome) -> None:
         table.add_column(heading, justify='right' if heading == 'measured' else 'left')
     small = f'< {MAX_DRIFT:.0f}°'
     for label, way, expected in (
-            (f'fall in {FALL_TIME:.0f} s, node off', outcome.fall, f'> {MIN_FALL:.0f}°'),
-            (f'drift in {outcome.hold:.0f} s, node on', outcome.drift, small),
-            ('moved by the push', outcome.pushed, f'> {MIN_PUSH:.0f}°'),
-            (f'drift in {WATCH_TIME:.0f} s there', outcome.drift_after_push, small)):
+        (f'fall in {FALL_TIME:.0f} s, node off', outcome.fall, f'> {MIN_FALL:.0f}°'),
+        (f'drift in {outcome.hold:.0f} s, node on', outcome.drift, small),
+        ('moved by the push', outcome.pushed, f'> {MIN_PUSH:.0f}°'),
+        (f'drift in {WATCH_TIME:.0f} s there', outcome.drift_after_push, small),
+    ):
         table.add_row(label, f'{outcome.largest(way):.3f}°', expected, _softest(outcome, way))
     console.print(table)
     if not outcome.recording.turning.all():

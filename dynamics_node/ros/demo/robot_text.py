@@ -73,8 +73,10 @@ def movable_joints(text: str) -> list[MovableJoint]:
     elements = parse(text).findall('joint')
     for element in elements:
         if element.get('type') in ('floating', 'planar'):
-            raise RobotRefusedError(f'joint {element.get("name")!r} is {element.get("type")}: the '
-                                    'simulated robot has joints of one degree of freedom only')
+            raise RobotRefusedError(
+                f'joint {element.get("name")!r} is {element.get("type")}: the '
+                'simulated robot has joints of one degree of freedom only'
+            )
     found = [_joint(e) for e in elements if e.get('type') in ONE_DEGREE_OF_FREEDOM]
     if not found:
         raise RobotRefusedError('the robot has no movable joint: there is nothing to simulate')
@@ -100,8 +102,11 @@ def mujoco_text(text: str) -> str:
             joint.remove(mimic)
     for old in root.findall('mujoco'):
         root.remove(old)
-    ET.SubElement(ET.SubElement(root, 'mujoco'), 'compiler', {
-        'discardvisual': 'false', 'fusestatic': 'true', 'inertiafromgeom': 'false'})
+    ET.SubElement(
+        ET.SubElement(root, 'mujoco'),
+        'compiler',
+        {'discardvisual': 'false', 'fusestatic': 'true', 'inertiafromgeom': 'false'},
+    )
     return ET.tostring(root, encoding='unicode')
 
 
@@ -134,7 +139,8 @@ def _joint(element: ET.Element) -> MovableJoint:
         effort=limit.get('effort', 0.0),
         velocity=limit.get('velocity', 0.0),
         damping=_attributes(element.find('dynamics')).get('damping', 0.0),
-        mimic=_mimic(element.find('mimic')))
+        mimic=_mimic(element.find('mimic')),
+    )
 
 
 def _mimic(element: ET.Element | None) -> Mimic | None:
@@ -142,8 +148,9 @@ def _mimic(element: ET.Element | None) -> Mimic | None:
     if element is None:
         return None
     values = _attributes(element)
-    return Mimic(element.get('joint', ''), values.get('multiplier', 1.0),
-                 values.get('offset', 0.0))
+    return Mimic(
+        element.get('joint', ''), values.get('multiplier', 1.0), values.get('offset', 0.0)
+    )
 
 
 def _attributes(element: ET.Element | None) -> dict[str, float]:

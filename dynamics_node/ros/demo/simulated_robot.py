@@ -55,12 +55,15 @@ class SimulatedRobot(Node):
         self._command_rows = self._rows_of(self._value('joints') or self.arm.driven_names)
         self._connect(text)
         self._pacer = Pacer(TIME_STEP, time.monotonic())
-        self._clock_offset = ClockOffset(lambda: self.get_clock().now().nanoseconds,
-                                         time.monotonic_ns)
+        self._clock_offset = ClockOffset(
+            lambda: self.get_clock().now().nanoseconds, time.monotonic_ns
+        )
         self._viewer = self._open_viewer()
         self._next_view = 0.0
-        self.get_logger().info(f'{robot_name(text)} is on its brakes; command order: '
-                               f'{", ".join(self._command_names())}')
+        self.get_logger().info(
+            f'{robot_name(text)} is on its brakes; command order: '
+            f'{", ".join(self._command_names())}'
+        )
 
     def _declare_parameters(self, view: bool) -> None:
         """Declare the parameters; those without a value here are empty arrays."""
@@ -82,8 +85,10 @@ class SimulatedRobot(Node):
         arm = MujocoArm(text)
         added = add_missing_damping(arm)
         if added:
-            self.get_logger().warning('the URDF states practically no damping for these joints, '
-                                      f'added some viscous friction: {"; ".join(added)}')
+            self.get_logger().warning(
+                'the URDF states practically no damping for these joints, '
+                f'added some viscous friction: {"; ".join(added)}'
+            )
         return arm
 
     def _start_pose(self, text: str) -> Any:
@@ -93,8 +98,10 @@ class SimulatedRobot(Node):
             return start_pose(self.arm, robot_name(text))
         names = self.arm.driven_names
         if len(pose) != len(names) or not all(map(math.isfinite, pose)):
-            raise RobotRefusedError(f'start_pose: expected {len(names)} finite numbers for '
-                                    f'{", ".join(names)}, got {list(pose)}')
+            raise RobotRefusedError(
+                f'start_pose: expected {len(names)} finite numbers for '
+                f'{", ".join(names)}, got {list(pose)}'
+            )
         return list(pose)
 
     def _rows_of(self, joints: list[str]) -> list[int]:
@@ -102,8 +109,10 @@ class SimulatedRobot(Node):
         names = self.arm.driven_names
         wrong = [joint for joint in joints if joint not in names]
         if wrong or len(set(joints)) != len(joints):
-            raise RobotRefusedError(f'joints: expected different ones out of {", ".join(names)}, '
-                                    f'got {", ".join(joints)}')
+            raise RobotRefusedError(
+                f'joints: expected different ones out of {", ".join(names)}, '
+                f'got {", ".join(joints)}'
+            )
         return [names.index(joint) for joint in joints]
 
     def _command_names(self) -> list[str]:
@@ -117,8 +126,9 @@ class SimulatedRobot(Node):
         self._description = self.create_publisher(String, 'robot_description', LATCHED)
         self._description.publish(String(data=text))
         self._states = self.create_publisher(JointState, 'joint_states', 10)
-        self.create_subscription(Float64MultiArray, 'forward_effort_controller/commands',
-                                 self._on_command, 1)
+        self.create_subscription(
+            Float64MultiArray, 'forward_effort_controller/commands', self._on_command, 1
+        )
         self.create_service(SetBool, '~/set_brakes', self._on_set_brakes)
         self.create_service(Trigger, '~/reset', self._on_reset)
         self.create_service(Trigger, '~/push', self._on_push)
@@ -175,15 +185,18 @@ class SimulatedRobot(Node):
             self.get_logger().error(
                 f'command ignored: expected {wanted} finite numbers for '
                 f'{", ".join(self._command_names())}, got {len(command)} values: '
-                f'{list(command[:wanted])}', throttle_duration_sec=1.0)
+                f'{list(command[:wanted])}',
+                throttle_duration_sec=1.0,
+            )
             return
         effort = [0.0] * len(self.arm.driven)
         for row, value in zip(self._command_rows, command):
             effort[row] = value
         self.arm.set_effort(effort)
 
-    def _on_set_brakes(self, request: SetBool.Request,
-                       response: SetBool.Response) -> SetBool.Response:
+    def _on_set_brakes(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
         """Engage or release the brakes."""
         if self.arm.gliding:
             response.message = 'the robot is on its way to the start pose; try again when it is'
@@ -210,8 +223,9 @@ class SimulatedRobot(Node):
             force = plan_push(self.arm, self.arm.driven_position, duration)
         self.arm.push(force, duration)
         response.success = True
-        response.message = (f'pushed with ({force[0]:.1f}, {force[1]:.1f}, {force[2]:.1f}) N '
-                            f'for {duration:.2f} s')
+        response.message = (
+            f'pushed with ({force[0]:.1f}, {force[1]:.1f}, {force[2]:.1f}) N for {duration:.2f} s'
+        )
         return response
 
     def close(self) -> None:

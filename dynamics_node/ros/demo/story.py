@@ -47,15 +47,22 @@ class Outcome:
         """Return what was not as it should be, one sentence each."""
         fall, pushed = self.largest(self.fall), self.largest(self.pushed)
         drifts = {'held': self.drift, 'held after the push': self.drift_after_push}
-        found = [f'{when}, it drifted {self.largest(drift):.2f} degrees; '
-                 f'expected less than {MAX_DRIFT:.0f}'
-                 for when, drift in drifts.items() if not self.largest(drift) < MAX_DRIFT]
+        found = [
+            f'{when}, it drifted {self.largest(drift):.2f} degrees; '
+            f'expected less than {MAX_DRIFT:.0f}'
+            for when, drift in drifts.items()
+            if not self.largest(drift) < MAX_DRIFT
+        ]
         if not fall > MIN_FALL:
-            found.insert(0, f'released without the node, it fell {fall:.1f} degrees; expected '
-                            f'more than {MIN_FALL:.0f}')
+            found.insert(
+                0,
+                f'released without the node, it fell {fall:.1f} degrees; expected '
+                f'more than {MIN_FALL:.0f}',
+            )
         if not pushed > MIN_PUSH:
-            found.append(f'the push moved it {pushed:.1f} degrees; expected more than '
-                         f'{MIN_PUSH:.0f}')
+            found.append(
+                f'the push moved it {pushed:.1f} degrees; expected more than {MIN_PUSH:.0f}'
+            )
         return found
 
 
@@ -90,8 +97,9 @@ class Story:
         self._client.set_brakes(True)
         self.outcome.fall = self._recording.displacement(start, phase.start, phase.end)
         self.outcome.poses['after the fall'] = self._recording.position
-        self._tell('output off, brakes released', 'fell', self.outcome.fall,
-                   f'in {FALL_TIME:.0f} s')
+        self._tell(
+            'output off, brakes released', 'fell', self.outcome.fall, f'in {FALL_TIME:.0f} s'
+        )
 
     def _return_to_start(self) -> None:
         """Let the robot travel back to its start pose."""
@@ -100,7 +108,9 @@ class Story:
             self._client.reset()
             self._client.wait_for(
                 lambda: bool(np.allclose(self._recording.position, goal, atol=1e-6)),
-                TRAVEL_TIMEOUT, 'the robot to be back at its start pose')
+                TRAVEL_TIMEOUT,
+                'the robot to be back at its start pose',
+            )
 
     def _enable(self) -> None:
         """Turn the output on while the brakes still hold."""
@@ -116,8 +126,12 @@ class Story:
             self._client.spin_for(self.outcome.hold)
         self.outcome.drift = self._recording.displacement(start, phase.start, phase.end)
         self.outcome.poses['held'] = self._recording.position
-        self._tell('output on, brakes released', 'drifted', self.outcome.drift,
-                   f'in {self.outcome.hold:.0f} s')
+        self._tell(
+            'output on, brakes released',
+            'drifted',
+            self.outcome.drift,
+            f'in {self.outcome.hold:.0f} s',
+        )
 
     def _push(self) -> None:
         """Push, and wait until friction has stopped the arm."""
@@ -127,19 +141,23 @@ class Story:
             self._client.spin_for(0.5)
             self._client.wait_for(self._rested(), REST_TIMEOUT, 'the pushed arm to come to rest')
         self.outcome.pushed = np.abs(self._recording.natural(self._recording.position - start))
-        self._tell(self.outcome.push, 'moved', self.outcome.pushed,
-                   f'and came to rest after {phase.end - phase.start:.1f} s')
+        self._tell(
+            self.outcome.push,
+            'moved',
+            self.outcome.pushed,
+            f'and came to rest after {phase.end - phase.start:.1f} s',
+        )
 
     def _watch(self) -> None:
         """Look whether the arm stays where it was pushed to."""
         start = self._recording.position
         with self._phase('held there') as phase:
             self._client.spin_for(WATCH_TIME)
-        self.outcome.drift_after_push = self._recording.displacement(
-            start, phase.start, phase.end)
+        self.outcome.drift_after_push = self._recording.displacement(start, phase.start, phase.end)
         self.outcome.poses['after the push'] = self._recording.position
-        self._tell('left alone there', 'drifted', self.outcome.drift_after_push,
-                   f'in {WATCH_TIME:.0f} s')
+        self._tell(
+            'left alone there', 'drifted', self.outcome.drift_after_push, f'in {WATCH_TIME:.0f} s'
+        )
 
     def _disable(self) -> None:
         """Catch the arm with the brakes, then turn the output off."""
@@ -158,6 +176,7 @@ class Story:
                 since = self._recording.now
             self._fail_on_fault()
             return self._recording.now - since > REST_TIME
+
         return rested
 
     def _fail_on_fault(self) -> None:

@@ -15,6 +15,8 @@ def open_viewer(model: mujoco.MjModel, data: mujoco.MjData) -> Any:
     if on_linux and not (os.environ.get('DISPLAY') or os.environ.get('WAYLAND_DISPLAY')):
         raise RobotRefusedError(
             'the viewer needs a display, and neither DISPLAY nor WAYLAND_DISPLAY is set; run '
-            'without VIEW=1 or --view')
+            'without VIEW=1 or --view'
+        )
     from mujoco import viewer  # imports GLFW, which complains where there is no display
+
     return viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False)

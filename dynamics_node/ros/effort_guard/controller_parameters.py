@@ -8,8 +8,10 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 
 from ..guard import logged
 
-_KINDS = {'joints': ParameterType.PARAMETER_STRING_ARRAY,
-          'interface_name': ParameterType.PARAMETER_STRING}
+_KINDS = {
+    'joints': ParameterType.PARAMETER_STRING_ARRAY,
+    'interface_name': ParameterType.PARAMETER_STRING,
+}
 # Then a question counts as lost, s.
 LOST_AFTER = 2.0
 
@@ -64,23 +66,31 @@ class ControllerParameters:
 
     def _names(self):
         own = self._node.get_fully_qualified_name()
-        return {f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-                for info in self._node.get_subscriptions_info_by_topic(self._topic)
-                # Command line tools have hidden names and no parameters.
-                if info.node_name and not info.node_name.startswith('_')} - {own}
+        return {
+            f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+            for info in self._node.get_subscriptions_info_by_topic(self._topic)
+            # Command line tools have hidden names and no parameters.
+            if info.node_name and not info.node_name.startswith('_')
+        } - {own}
 
     def _take_over(self):
         known = {name: listener.values for name, listener in sorted(self._listeners.items())}
         joints = {name: values['joints'] for name, values in known.items() if 'joints' in values}
-        interfaces = {values['interface_name'] for values in known.values()
-                      if 'interface_name' in values} - {''}
+        interfaces = {
+            values['interface_name'] for values in known.values() if 'interface_name' in values
+        } - {''}
         different = {tuple(names) for names in joints.values()}
         self.joint_count = len(next(iter(different))) if len(different) == 1 else None
-        self._declare('joints', list(next(iter(different))) if len(different) == 1 else [
-            f'{name}: {" ".join(names)}' for name, names in joints.items()] or None)
+        self._declare(
+            'joints',
+            list(next(iter(different)))
+            if len(different) == 1
+            else [f'{name}: {" ".join(names)}' for name, names in joints.items()] or None,
+        )
         # The one that speaks against efforts, if there is one.
-        self._declare('interface_name', min(interfaces, key=lambda name: name == 'effort',
-                                            default=None))
+        self._declare(
+            'interface_name', min(interfaces, key=lambda name: name == 'effort', default=None)
+        )
 
     def _declare(self, name, value):
         is_declared = self._node.has_parameter(name)
@@ -95,9 +105,14 @@ class ControllerParameters:
             if is_declared:
                 self._node.set_parameters([Parameter(name, value=value)])
             else:
-                self._node.declare_parameter(name, value, ParameterDescriptor(
-                    description='That of the controller behind the guard; cannot be set'),
-                    ignore_override=True)
+                self._node.declare_parameter(
+                    name,
+                    value,
+                    ParameterDescriptor(
+                        description='That of the controller behind the guard; cannot be set'
+                    ),
+                    ignore_override=True,
+                )
             self.logger.info(f'{name} of the controller: {value}')
         finally:
             self._is_own_change = False
@@ -105,8 +120,10 @@ class ControllerParameters:
     def _check(self, parameters):
         mirrored = [item.name for item in parameters if item.name in _KINDS]
         if mirrored and not self._is_own_change:
-            return SetParametersResult(successful=False, reason=f'{", ".join(mirrored)}: those '
-                                       'of the controller, set them there')
+            return SetParametersResult(
+                successful=False,
+                reason=f'{", ".join(mirrored)}: those of the controller, set them there',
+            )
         return SetParametersResult(successful=True)
 
 
@@ -127,16 +144,21 @@ class _Listener:
     def ask(self):
         """Take the answers that have come, and ask again."""
         if self._futures and all(future.done() for future in self._futures.values()):
-            self.values = {name: value for name, future in self._futures.items()
-                           if (value := _value(name, future)) is not None}
+            self.values = {
+                name: value
+                for name, future in self._futures.items()
+                if (value := _value(name, future)) is not None
+            }
             self._futures = {}
         if self._futures and time.monotonic() - self._asked_at > LOST_AFTER:
             self._forget()
         if not self._futures and self._client is not None and self._client.service_is_ready():
             self._asked_at = time.monotonic()
             # One at a time: rclcpp answers nothing at all if one of several does not exist.
-            self._futures = {name: self._client.call_async(GetParameters.Request(names=[name]))
-                             for name in _KINDS}
+            self._futures = {
+                name: self._client.call_async(GetParameters.Request(names=[name]))
+                for name in _KINDS
+            }
 
     def _forget(self):
         for future in self._futures.values():

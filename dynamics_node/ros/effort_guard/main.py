@@ -49,10 +49,12 @@ def _run(args, signals):
     import rclpy
     import rclpy.logging
     from rclpy.signals import SignalHandlerOptions
+
     try:
         # rclpy's own handlers would end the context before the effort is at zero.
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         from .node import EffortGuardNode
+
         node = EffortGuardNode()
     except Exception as error:  # a command line or a parameter that is refused
         rclpy.logging.get_logger('effort_guard').fatal(str(error))
@@ -66,6 +68,7 @@ def _run(args, signals):
 
 def _spin(node, signals):
     from rclpy.executors import SingleThreadedExecutor
+
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     signals.call(node.create_guard_condition(lambda: None).trigger)
@@ -104,8 +107,9 @@ def _bring_to_rest(node, executor, signals):
         node.drop()
     if node.flush(ACKNOWLEDGE_WITHIN):
         return True
-    node.logger.error('the controller has not acknowledged the last command, zero: an effort may '
-                      'be left')
+    node.logger.error(
+        'the controller has not acknowledged the last command, zero: an effort may be left'
+    )
     return False
 
 

@@ -56,13 +56,19 @@ class EffortGuardNode(Node):
         super().__init__('effort_guard', **options)
         self.logger = self.get_logger()
         values = check_all(declare(self, GUARD_PARAMETERS))
-        self._settings = GuardSettings(**{name: values[name] for name in (
-            'timeout', 'stop_ramp', 'rate_limits', 'effort_limits')})
+        self._settings = GuardSettings(
+            **{
+                name: values[name]
+                for name in ('timeout', 'stop_ramp', 'rate_limits', 'effort_limits')
+            }
+        )
         self._input = self.resolve_topic_name(values['input_topic'])
         self._output = self.resolve_topic_name(values['output_topic'])
         if self._input == self._output:
-            raise ParameterError(f'input_topic, output_topic: both are {self._input}, and the '
-                                 'guard would hear itself; expected two topics')
+            raise ParameterError(
+                f'input_topic, output_topic: both are {self._input}, and the '
+                'guard would hear itself; expected two topics'
+            )
         self.guard = EffortGuard(self._settings, self._changed, self._obstacle)
         self._changes: list = []
         self._remarks: list[str] = []
@@ -70,12 +76,15 @@ class EffortGuardNode(Node):
         self._warned, self._logged = Throttle(WARN_EVERY), {}
         self._refused_before = 0
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._publisher = self.create_publisher(Float64MultiArray, self._output, COMMAND,
-                                                event_callbacks=NO_EVENTS)
+        self._publisher = self.create_publisher(
+            Float64MultiArray, self._output, COMMAND, event_callbacks=NO_EVENTS
+        )
         self._state_publisher = self.create_publisher(
-            OutputStateMessage, '~/state', OUTPUT_STATE, event_callbacks=NO_EVENTS)
-        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', RESULT,
-                                                  event_callbacks=NO_EVENTS)
+            OutputStateMessage, '~/state', OUTPUT_STATE, event_callbacks=NO_EVENTS
+        )
+        self._diagnostics = self.create_publisher(
+            DiagnosticArray, '/diagnostics', RESULT, event_callbacks=NO_EVENTS
+        )
         self._controller = ControllerParameters(self, self._output)
         # On the steady clock: it must watch while simulation time stands still.
         self._look_timer = self.create_timer(LOOK_EVERY, self._look, clock=steady)
@@ -86,7 +95,8 @@ class EffortGuardNode(Node):
         self._publish_state()
         self.logger.info(
             f'guarding {self._input} -> {self._output}: timeout {self._settings.timeout:g} s, '
-            f'stop_ramp {self._settings.stop_ramp:g} s')
+            f'stop_ramp {self._settings.stop_ramp:g} s'
+        )
 
     def end(self, within, reason):
         """Take no more commands, and fade to zero; see `EffortGuard.end`."""
@@ -105,8 +115,13 @@ class EffortGuardNode(Node):
     def _subscribe(self):
         def subscribe(**events):
             return self.create_subscription(
-                Float64MultiArray, self._input, self._on_command, COMMAND,
-                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False, **events))
+                Float64MultiArray,
+                self._input,
+                self._on_command,
+                COMMAND,
+                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False, **events),
+            )
+
         try:
             return subscribe(matched=self._matched)
         except UnsupportedEventTypeError:  # of another middleware
@@ -143,8 +158,7 @@ class EffortGuardNode(Node):
         self._publisher.publish(Float64MultiArray(layout=self._layout, data=array('d', output)))
 
     def _look_again(self):
-        self._look_timer.timer_period_ns = math.ceil(
-            self.guard.next_look(time.monotonic()) * 1e9)
+        self._look_timer.timer_period_ns = math.ceil(self.guard.next_look(time.monotonic()) * 1e9)
         self._look_timer.reset()
 
     def _changed(self, state, reason):
@@ -180,23 +194,29 @@ class EffortGuardNode(Node):
     def _obstacle(self):
         """Return why an effort must not begin now; '' if it may."""
         if self._publisher.get_subscription_count() == 0:
-            return (f'nothing listens on {self._output}: start the effort controller, or set '
-                    'output_topic to its topic')
+            return (
+                f'nothing listens on {self._output}: start the effort controller, or set '
+                'output_topic to its topic'
+            )
         return self._rival()
 
     def _rival(self):
         others = self.count_publishers(self._output) - 1
         if others <= 0:
             return ''
-        return (f'{others} other publisher(s) on {self._output}'
-                f'{self._names(self._output)}: two sources of effort would fight; what is to be '
-                f'guarded has to send to {self._input}')
+        return (
+            f'{others} other publisher(s) on {self._output}'
+            f'{self._names(self._output)}: two sources of effort would fight; what is to be '
+            f'guarded has to send to {self._input}'
+        )
 
     def _names(self, topic):
         own = (self.get_name(), self.get_namespace())
-        names = {f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-                 for info in self.get_publishers_info_by_topic(topic)
-                 if (info.node_name, info.node_namespace) != own}
+        names = {
+            f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+            for info in self.get_publishers_info_by_topic(topic)
+            if (info.node_name, info.node_namespace) != own
+        }
         return f' ({", ".join(sorted(names))})' if names else ''
 
     @logged
@@ -215,15 +235,19 @@ class EffortGuardNode(Node):
         remarks = [self._rival()]
         sources = self.count_publishers(self._input)
         if sources > 1:
-            remarks.append(f'{sources} publishers on {self._input}{self._names(self._input)}: '
-                           'commands of all of them pass')
+            remarks.append(
+                f'{sources} publishers on {self._input}{self._names(self._input)}: '
+                'commands of all of them pass'
+            )
         if self.guard.has_effort and not self._publisher.get_subscription_count():
             remarks.append(f'nothing listens on {self._output} any more')
         if self.guard.slow_period() is not None:
             # Without the number, which changes.
-            remarks.append(f'commands come too slowly: fewer than {PERIODS} within the timeout of '
-                           f'{self._settings.timeout:g} s; raise timeout, or the rate of the '
-                           'joint states')
+            remarks.append(
+                f'commands come too slowly: fewer than {PERIODS} within the timeout of '
+                f'{self._settings.timeout:g} s; raise timeout, or the rate of the '
+                'joint states'
+            )
         return [remark for remark in remarks if remark]
 
     # Once a second, and on request -----------------------------------------------------------
@@ -231,10 +255,13 @@ class EffortGuardNode(Node):
     @logged
     def _every_second(self):
         refused = self.guard.refused.total()
-        if refused != self._refused_before and self._logged.setdefault(
-                'refused', Throttle(WARN_EVERY)).is_due():
-            counts = ', '.join(f'{count} {kind}'
-                               for kind, count in self.guard.refused.most_common())
+        if (
+            refused != self._refused_before
+            and self._logged.setdefault('refused', Throttle(WARN_EVERY)).is_due()
+        ):
+            counts = ', '.join(
+                f'{count} {kind}' for kind, count in self.guard.refused.most_common()
+            )
             self.logger.warning(f'commands that did not pass so far: {counts}')
         self._refused_before = refused
         self._diagnostics.publish(self._health())
@@ -242,18 +269,31 @@ class EffortGuardNode(Node):
     def _health(self):
         guard, period = self.guard, self.guard.slow_period()
         level = {'FAULT': DiagnosticStatus.ERROR, 'STOPPING': DiagnosticStatus.WARN}.get(
-            guard.state.name, DiagnosticStatus.WARN if self._remarks else DiagnosticStatus.OK)
+            guard.state.name, DiagnosticStatus.WARN if self._remarks else DiagnosticStatus.OK
+        )
         values = {
-            'state': guard.state.name, 'input': self._input, 'output': self._output,
-            'passed': guard.passed, 'clamped': guard.clamped, 'fades': guard.fades,
-            'silences bridged': guard.bridged, 'own standstills': guard.stalls,
+            'state': guard.state.name,
+            'input': self._input,
+            'output': self._output,
+            'passed': guard.passed,
+            'clamped': guard.clamped,
+            'fades': guard.fades,
+            'silences bridged': guard.bridged,
+            'own standstills': guard.stalls,
             **({'slow period [s]': f'{period:.4f}'} if period is not None else {}),
-            **{f'refused: {kind}': count for kind, count in sorted(guard.refused.items())}}
-        message = DiagnosticArray(status=[DiagnosticStatus(
-            name=f'{self.get_name()}: guard', level=level,
-            message='; but '.join([f'{guard.state.name}: {guard.reason}', *self._remarks]),
-            hardware_id=self.get_fully_qualified_name(),
-            values=[KeyValue(key=key, value=str(value)) for key, value in values.items()])])
+            **{f'refused: {kind}': count for kind, count in sorted(guard.refused.items())},
+        }
+        message = DiagnosticArray(
+            status=[
+                DiagnosticStatus(
+                    name=f'{self.get_name()}: guard',
+                    level=level,
+                    message='; but '.join([f'{guard.state.name}: {guard.reason}', *self._remarks]),
+                    hardware_id=self.get_fully_qualified_name(),
+                    values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
+                )
+            ]
+        )
         message.header.stamp = self.get_clock().now().to_msg()
         return message
 

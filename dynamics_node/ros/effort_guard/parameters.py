@@ -4,22 +4,61 @@ from ..parameter import DOUBLE, DOUBLES, Parameter, ParameterError, TEXT
 from ...safety.effort_guard import GuardSettings
 
 GUARD_PARAMETERS = (
-    Parameter('input_topic', TEXT, '~/commands', 'Where commands come from: the command_topic '
-              'of the dynamics node', read_only=True),
-    Parameter('output_topic', TEXT, 'forward_effort_controller/commands', 'Where they go: the '
-              'topic of the effort controller', read_only=True),
-    Parameter('timeout', DOUBLE, GuardSettings.timeout, 'Longest time without a command while '
-              'an effort is in force, s. At least three periods of the commands, which come with '
-              'the joint states', read_only=True, low=0.01, high=1.0),
-    Parameter('stop_ramp', DOUBLE, GuardSettings.stop_ramp, 'Time from the last command to zero, '
-              's', read_only=True, low=0.1, high=10.0),
-    Parameter('rate_limits', DOUBLES, (), 'Largest change of effort per joint while it fades, '
-              'N m/s or N/s, in the order of the commands; a fade takes longer than stop_ramp '
-              'where they require it, 10 s at most. Empty: none', read_only=True, low=0.0,
-              low_open=True),
-    Parameter('effort_limits', DOUBLES, (), 'Largest effort per joint, N m or N. Commands above '
-              'it are clamped, and those that begin above a tenth of it do not pass. Empty: none',
-              read_only=True, low=0.0, low_open=True),
+    Parameter(
+        'input_topic',
+        TEXT,
+        '~/commands',
+        'Where commands come from: the command_topic of the dynamics node',
+        read_only=True,
+    ),
+    Parameter(
+        'output_topic',
+        TEXT,
+        'forward_effort_controller/commands',
+        'Where they go: the topic of the effort controller',
+        read_only=True,
+    ),
+    Parameter(
+        'timeout',
+        DOUBLE,
+        GuardSettings.timeout,
+        'Longest time without a command while '
+        'an effort is in force, s. At least three periods of the commands, which come with '
+        'the joint states',
+        read_only=True,
+        low=0.01,
+        high=1.0,
+    ),
+    Parameter(
+        'stop_ramp',
+        DOUBLE,
+        GuardSettings.stop_ramp,
+        'Time from the last command to zero, s',
+        read_only=True,
+        low=0.1,
+        high=10.0,
+    ),
+    Parameter(
+        'rate_limits',
+        DOUBLES,
+        (),
+        'Largest change of effort per joint while it fades, '
+        'N m/s or N/s, in the order of the commands; a fade takes longer than stop_ramp '
+        'where they require it, 10 s at most. Empty: none',
+        read_only=True,
+        low=0.0,
+        low_open=True,
+    ),
+    Parameter(
+        'effort_limits',
+        DOUBLES,
+        (),
+        'Largest effort per joint, N m or N. Commands above '
+        'it are clamped, and those that begin above a tenth of it do not pass. Empty: none',
+        read_only=True,
+        low=0.0,
+        low_open=True,
+    ),
 )
 
 
@@ -46,16 +85,20 @@ def check_all(given):
     checked, problems = {}, []
     for parameter in GUARD_PARAMETERS:
         try:
-            checked[parameter.name] = parameter.check(given.get(parameter.name,
-                                                                parameter.default))
+            checked[parameter.name] = parameter.check(given.get(parameter.name, parameter.default))
         except ParameterError as error:
             problems.append(str(error))
     rates, limits = (checked.get(name, ()) for name in ('rate_limits', 'effort_limits'))
     if rates and limits and len(rates) != len(limits):
-        problems.append('rate_limits, effort_limits: expected one number per joint in both, got '
-                        f'{len(rates)} and {len(limits)}')
-    problems += [f'{name}: expected the name of a topic, got none'
-                 for name in ('input_topic', 'output_topic') if checked.get(name) == '']
+        problems.append(
+            'rate_limits, effort_limits: expected one number per joint in both, got '
+            f'{len(rates)} and {len(limits)}'
+        )
+    problems += [
+        f'{name}: expected the name of a topic, got none'
+        for name in ('input_topic', 'output_topic')
+        if checked.get(name) == ''
+    ]
     if problems:
         raise ParameterError('; '.join(problems))
     return checked

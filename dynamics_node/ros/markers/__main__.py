@@ -55,6 +55,7 @@ def main(args=None):
     from rclpy.signals import SignalHandlerOptions
 
     from .node import MarkersNode
+
     try:
         # rclpy's own handlers would end the context inside a wait, which raises.
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)

@@ -71,6 +71,7 @@ class ErrorReport:
 
 def reported(method):
     """Wrap a callback of an object with `errors`, an ErrorReport: no exception leaves it."""
+
     @functools.wraps(method)
     def safe(self, *arguments):
         try:
@@ -78,4 +79,5 @@ def reported(method):
         except Exception as error:
             self.errors.log(method.__name__, error)
             return None
+
     return safe

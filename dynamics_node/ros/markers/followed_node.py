@@ -11,8 +11,17 @@ from rclpy.task import Future
 from .callbacks import ErrorReport, reported
 from ..qos import NO_SUBSCRIPTION_EVENTS
 
-NAMES = ('robot_description', 'robot_description_file', 'joints', 'gravity', 'effort_limits',
-         'payload.link', 'payload.mass', 'payload.com', 'payload.inertia')
+NAMES = (
+    'robot_description',
+    'robot_description_file',
+    'joints',
+    'gravity',
+    'effort_limits',
+    'payload.link',
+    'payload.mass',
+    'payload.com',
+    'payload.inertia',
+)
 # An answer that takes longer is asked for once more, s.
 ANSWER_WITHIN = 5.0
 
@@ -49,9 +58,13 @@ class FollowedNode:
         self.errors = ErrorReport(node.get_logger())
         self._node, self._on_settings = node, on_settings
         self._client = node.create_client(GetParameters, f'{name}/get_parameters')
-        node.create_subscription(ParameterEvent, '/parameter_events', self._on_event,
-                                 qos_profile_parameter_events,
-                                 event_callbacks=NO_SUBSCRIPTION_EVENTS)
+        node.create_subscription(
+            ParameterEvent,
+            '/parameter_events',
+            self._on_event,
+            qos_profile_parameter_events,
+            event_callbacks=NO_SUBSCRIPTION_EVENTS,
+        )
         self._identity = None
         self._pending: Future | None = None
         self._asked_at = 0.0
@@ -60,8 +73,12 @@ class FollowedNode:
     def check(self):
         """Notice that the other node has appeared, gone or been started again."""
         # Each publisher has an identity of its own, which another start does not have.
-        identity = tuple(sorted(tuple(info.endpoint_gid) for info in
-                                self._node.get_publishers_info_by_topic(self.torque_topic)))
+        identity = tuple(
+            sorted(
+                tuple(info.endpoint_gid)
+                for info in self._node.get_publishers_info_by_topic(self.torque_topic)
+            )
+        )
         if not identity:
             self._identity = None
             if self.settings is not None:
@@ -96,7 +113,8 @@ class FollowedNode:
             self._node.get_logger().error(
                 f'{self.name} lacks parameters: expected a dynamics_node with '
                 f'{", ".join(NAMES)}; set the parameter dynamics_node of this program to the '
-                'name of one')
+                'name of one'
+            )
             return
         self.settings = dict(zip(NAMES, map(parameter_value_to_python, values), strict=True))
         self._on_settings(True)
@@ -105,9 +123,11 @@ class FollowedNode:
     def _on_event(self, event):
         if event.node != self.name:
             return
-        changed = {item.name: parameter_value_to_python(item.value)
-                   for item in (*event.new_parameters, *event.changed_parameters)
-                   if item.name in NAMES}
+        changed = {
+            item.name: parameter_value_to_python(item.value)
+            for item in (*event.new_parameters, *event.changed_parameters)
+            if item.name in NAMES
+        }
         if not changed:
             return
         if self._pending is not None:

@@ -9,8 +9,14 @@ from ...drawing import ARROW, BOX, DISC, LINE, SPHERE, TEXT
 
 # A marker that is not replaced within this time vanishes, s.
 LIFETIME = 1
-_TYPES = {SPHERE: Marker.SPHERE, BOX: Marker.CUBE, DISC: Marker.CYLINDER, LINE: Marker.LINE_STRIP,
-          ARROW: Marker.ARROW, TEXT: Marker.TEXT_VIEW_FACING}
+_TYPES = {
+    SPHERE: Marker.SPHERE,
+    BOX: Marker.CUBE,
+    DISC: Marker.CYLINDER,
+    LINE: Marker.LINE_STRIP,
+    ARROW: Marker.ARROW,
+    TEXT: Marker.TEXT_VIEW_FACING,
+}
 
 
 class MarkerMessages:

@@ -53,13 +53,18 @@ class MarkersNode(Node):
         self.errors = ErrorReport(self.get_logger())
         self._followed = FollowedNode(self, self._full_name(), self._on_settings)
         self._publisher = self.create_publisher(
-            MarkerArray, f'{self._followed.name}/markers', RESULT, event_callbacks=NO_EVENTS)
+            MarkerArray, f'{self._followed.name}/markers', RESULT, event_callbacks=NO_EVENTS
+        )
         self._view: RobotView | None = None
         self._source, self._refused = None, {}
         self._text = None
         self._description = self.create_subscription(
-            String, 'robot_description', self._on_description, ROBOT_DESCRIPTION,
-            event_callbacks=NO_SUBSCRIPTION_EVENTS)
+            String,
+            'robot_description',
+            self._on_description,
+            ROBOT_DESCRIPTION,
+            event_callbacks=NO_SUBSCRIPTION_EVENTS,
+        )
         self._inputs: list = []  # subscriptions to joint states and gravity torque
         self._state_group, self._torque_group = LimitedGroup(), LimitedGroup()
         self._stamp, self._state_time = None, 0.0
@@ -71,15 +76,22 @@ class MarkersNode(Node):
         self._check_timer = self.create_timer(CHECK_EVERY, self._check, clock=steady)
 
     def _full_name(self):
-        given = self.declare_parameter('dynamics_node', 'dynamics_node', ParameterDescriptor(
-            description='Name of the dynamics node that markers are drawn for, relative to the '
-            'namespace of this program', read_only=True)).value
+        given = self.declare_parameter(
+            'dynamics_node',
+            'dynamics_node',
+            ParameterDescriptor(
+                description='Name of the dynamics node that markers are drawn for, relative to '
+                'the namespace of this program',
+                read_only=True,
+            ),
+        ).value
         try:
             name = expand_topic_name(given, self.get_name(), self.get_namespace())
             validate_full_topic_name(name)
         except Exception as error:
-            raise ValueError(f'dynamics_node: expected the name of a node, got {given!r}: '
-                             f'{error}') from error
+            raise ValueError(
+                f'dynamics_node: expected the name of a node, got {given!r}: {error}'
+            ) from error
         return name
 
     def spin_once(self, executor):
@@ -123,8 +135,10 @@ class MarkersNode(Node):
         # The first one that can be used is shown: the dynamics node has the same order.
         settings = self._followed.settings or {}
         if settings.get('robot_description'):
-            yield (settings['robot_description'].encode(errors='surrogatepass'),
-                   f'parameter robot_description of {self._followed.name}')
+            yield (
+                settings['robot_description'].encode(errors='surrogatepass'),
+                f'parameter robot_description of {self._followed.name}',
+            )
         if settings.get('robot_description_file'):
             path = settings['robot_description_file']
             yield path, f'parameter robot_description_file of {self._followed.name} ({path})'
@@ -141,7 +155,8 @@ class MarkersNode(Node):
             return False
         self._view, self._source = view, source
         self.get_logger().info(
-            f'robot description from {origin}: joints {", ".join(view.model.joint_names)}')
+            f'robot description from {origin}: joints {", ".join(view.model.joint_names)}'
+        )
         self._configure()
         return True
 
@@ -153,7 +168,9 @@ class MarkersNode(Node):
         except DynamicsError as error:
             self.get_logger().error(
                 f'parameters of {self._followed.name} do not fit the robot description, masses '
-                f'are shown without them: {error}', throttle_duration_sec=10.0)
+                f'are shown without them: {error}',
+                throttle_duration_sec=10.0,
+            )
 
     # States -----------------------------------------------------------------------------------
 
@@ -182,12 +199,24 @@ class MarkersNode(Node):
 
     def _begin(self):
         self._inputs = [
-            self.create_subscription(JointState, topic, callback, qos, callback_group=group,
-                                     event_callbacks=NO_SUBSCRIPTION_EVENTS)
+            self.create_subscription(
+                JointState,
+                topic,
+                callback,
+                qos,
+                callback_group=group,
+                event_callbacks=NO_SUBSCRIPTION_EVENTS,
+            )
             for topic, callback, qos, group in (
                 ('joint_states', self._on_state, joint_states(True), self._state_group),
-                (self._followed.torque_topic, self._on_torque, joint_states(False),
-                 self._torque_group))]
+                (
+                    self._followed.torque_topic,
+                    self._on_torque,
+                    joint_states(False),
+                    self._torque_group,
+                ),
+            )
+        ]
         # A new viewer gets DELETEALL first.
         self._messages, self._state_time = MarkerMessages(), time.monotonic()
 
@@ -198,7 +227,8 @@ class MarkersNode(Node):
 
     def _publish(self, view):
         message = self._messages.make(
-            view.shapes(time.monotonic()), self._stamp, view.model.tree.root)
+            view.shapes(time.monotonic()), self._stamp, view.model.tree.root
+        )
         if message.markers:
             self._publisher.publish(message)
 
@@ -212,16 +242,20 @@ class MarkersNode(Node):
             return
         self._missing = missing
         topic = self._publisher.topic_name
-        self.get_logger().info(f'waiting for {"; ".join(missing)}' if missing
-                               else f'drawing on {topic} while it has a subscriber')
+        self.get_logger().info(
+            f'waiting for {"; ".join(missing)}'
+            if missing
+            else f'drawing on {topic} while it has a subscriber'
+        )
 
     def _find_missing(self):
         missing = []
         if self._view is None:
             missing.append(f'a robot description on {self._description.topic_name}')
         if self._followed.settings is None:
-            missing.append(f'the dynamics node {self._followed.name}, without which only masses '
-                           'are drawn')
+            missing.append(
+                f'the dynamics node {self._followed.name}, without which only masses are drawn'
+            )
         if self._inputs and time.monotonic() - self._state_time > 2.0 * CHECK_EVERY:
             missing.append(f'joint states on {self._inputs[0].topic_name}')
         return missing

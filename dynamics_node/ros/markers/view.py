@@ -86,11 +86,16 @@ class RobotView:
         selection = JointSelection(self._described, settings['joints'])
         limits = settings['effort_limits'] or self._described.effort_limits[selection.index]
         if len(limits) != len(selection.names):
-            raise DynamicsError(f'effort_limits: expected {len(selection.names)} numbers for '
-                                f'{", ".join(selection.names)}, got {len(limits)}')
+            raise DynamicsError(
+                f'effort_limits: expected {len(selection.names)} numbers for '
+                f'{", ".join(selection.names)}, got {len(limits)}'
+            )
         model = self._described.with_gravity(settings['gravity']).with_payload(
-            settings['payload.link'], settings['payload.mass'], settings['payload.com'],
-            tensor(settings['payload.inertia']))
+            settings['payload.link'],
+            settings['payload.mass'],
+            settings['payload.com'],
+            tensor(settings['payload.inertia']),
+        )
         return model, selection.names, limits
 
     def _show(self, model, joint_names, limits):
@@ -162,5 +167,9 @@ class RobotView:
         torque = np.array([self._torque.get(name, np.nan) for name in self.joint_names])
         is_known = now - self._torque_time <= TORQUE_TIMEOUT and bool(np.isfinite(torque).all())
         return self._picture.shapes(
-            self.model, self._position, torque if is_known else None,
-            self._effort[self._selected], self._limits)
+            self.model,
+            self._position,
+            torque if is_known else None,
+            self._effort[self._selected],
+            self._limits,
+        )

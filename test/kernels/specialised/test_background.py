@@ -40,8 +40,7 @@ def test_that_for_any_inertia_is_another(folder):
     assert background.start(*robot) is not process
     for started in background._processes.values():
         assert started.wait(60.0) == 0
-    assert {path.name for path in folder.iterdir()} == {
-        store.key(*robot), store.key(*robot, True)}
+    assert {path.name for path in folder.iterdir()} == {store.key(*robot), store.key(*robot, True)}
 
 
 def test_it_says_when_there_is_none(folder):
@@ -78,6 +77,9 @@ def test_nothing_that_lies_in_the_current_folder_runs(tmp_path_factory, monkeypa
 def test_packages_of_an_interactive_python_are_found(monkeypatch):
     # There '' stands for the current folder.
     monkeypatch.chdir(ROOT)
-    monkeypatch.setattr(sys, 'path', [
-        '', *(place for place in sys.path if place and Path(place).resolve() != ROOT)])
+    monkeypatch.setattr(
+        sys,
+        'path',
+        ['', *(place for place in sys.path if place and Path(place).resolve() != ROOT)],
+    )
     assert background.start(*packed(PENDULUM)).wait(60.0) == 0

@@ -16,8 +16,14 @@ from support.robots import random_urdf
 
 pytestmark = needs_machine_code
 
-QUANTITIES = {'dynamics': 2, 'coriolis_matrix': 2, 'mass_matrix': 1, 'gravity_torque': 1,
-              'inverse_dynamics': 3, 'forward_dynamics': 3}
+QUANTITIES = {
+    'dynamics': 2,
+    'coriolis_matrix': 2,
+    'mass_matrix': 1,
+    'gravity_torque': 1,
+    'inverse_dynamics': 3,
+    'forward_dynamics': 3,
+}
 
 
 @pytest.fixture(scope='module')
@@ -39,12 +45,14 @@ def assert_same(actual, expected):
 
 @pytest.mark.parametrize('name', QUANTITIES)
 def test_the_plain_case_is_answered_by_machine_code(model, arguments, name):
-    function, plain = getattr(model, name), arguments[:QUANTITIES[name]]
+    function, plain = getattr(model, name), arguments[: QUANTITIES[name]]
     assert inspect.isbuiltin(function)
     actual, expected = function(*plain), getattr(model._evaluation, name)(*plain)
     assert type(actual) is type(expected)
-    for mine, theirs in zip(*(answer if isinstance(answer, tuple) else (answer,)
-                              for answer in (actual, expected)), strict=True):
+    for mine, theirs in zip(
+        *(answer if isinstance(answer, tuple) else (answer,) for answer in (actual, expected)),
+        strict=True,
+    ):
         assert mine.dtype == theirs.dtype
         assert mine.shape == theirs.shape
         assert mine.flags.carray
@@ -53,9 +61,13 @@ def test_the_plain_case_is_answered_by_machine_code(model, arguments, name):
 
 
 WAYS_TO_HOLD = {
-    'answer': lambda D: D, 'view': lambda D: D[1:], 'transposed': lambda D: D.T,
-    'memoryview': memoryview, 'weak reference': weakref.ref,
-    'buffer': lambda D: np.frombuffer(D.data.cast('B'), dtype=float)}
+    'answer': lambda D: D,
+    'view': lambda D: D[1:],
+    'transposed': lambda D: D.T,
+    'memoryview': memoryview,
+    'weak reference': weakref.ref,
+    'buffer': lambda D: np.frombuffer(D.data.cast('B'), dtype=float),
+}
 
 
 @pytest.mark.parametrize('way', WAYS_TO_HOLD)
@@ -91,8 +103,11 @@ def _resized(D):
 
 
 CHANGES = {
-    'read-only': lambda D: D.setflags(write=False), 'reshaped': lambda D: setattr(D, 'shape', 16),
-    'another type': lambda D: setattr(D, 'dtype', np.int64), 'smaller': _resized}
+    'read-only': lambda D: D.setflags(write=False),
+    'reshaped': lambda D: setattr(D, 'shape', 16),
+    'another type': lambda D: setattr(D, 'dtype', np.int64),
+    'smaller': _resized,
+}
 
 
 @pytest.mark.filterwarnings('ignore:Setting the:DeprecationWarning')
@@ -117,29 +132,38 @@ def test_threads_do_not_get_each_others_answers(model):
     expected = [model._evaluation.mass_matrix(q) for q in states]
 
     def work(index):
-        return max(np.abs(model.mass_matrix(states[index]) - expected[index]).max()
-                   for _ in range(3000))
+        return max(
+            np.abs(model.mass_matrix(states[index]) - expected[index]).max() for _ in range(3000)
+        )
 
     with ThreadPoolExecutor(8) as pool:
         assert max(pool.map(work, range(8))) < 1e-12
 
 
 OTHER_SHAPES = {
-    'list': lambda q: q.tolist(), 'tuple': lambda q: tuple(q), 'integers': lambda q: q.astype(int),
-    'float32': lambda q: q.astype(np.float32), 'strided': lambda q: np.repeat(q, 2)[::2],
-    'reversed': lambda q: q[::-1].copy()[::-1], 'big endian': lambda q: q.astype('>f8'),
+    'list': lambda q: q.tolist(),
+    'tuple': lambda q: tuple(q),
+    'integers': lambda q: q.astype(int),
+    'float32': lambda q: q.astype(np.float32),
+    'strided': lambda q: np.repeat(q, 2)[::2],
+    'reversed': lambda q: q[::-1].copy()[::-1],
+    'big endian': lambda q: q.astype('>f8'),
     'unaligned': lambda q: np.frombuffer(b'x' + q.tobytes(), dtype=float, offset=1),
-    'subclass': lambda q: q.view(np.recarray), 'read-only': lambda q: np.broadcast_to(q, q.shape),
-    'objects': lambda q: q.astype(object), 'batch of one': lambda q: q[None],
-    'batch': lambda q: np.tile(q, (3, 1))}
+    'subclass': lambda q: q.view(np.recarray),
+    'read-only': lambda q: np.broadcast_to(q, q.shape),
+    'objects': lambda q: q.astype(object),
+    'batch of one': lambda q: q[None],
+    'batch': lambda q: np.tile(q, (3, 1)),
+}
 
 
 @pytest.mark.parametrize('kind', OTHER_SHAPES)
 def test_whatever_can_be_read_as_numbers_is_taken(model, arguments, kind):
     q = OTHER_SHAPES[kind](arguments[0])
     expected = model._evaluation.gravity_torque(q)
-    np.testing.assert_allclose(model.gravity_torque(q), expected, rtol=0,
-                               atol=1e-12 * np.abs(expected).max())
+    np.testing.assert_allclose(
+        model.gravity_torque(q), expected, rtol=0, atol=1e-12 * np.abs(expected).max()
+    )
 
 
 def test_keywords_are_taken(model, arguments):
@@ -150,9 +174,17 @@ def test_keywords_are_taken(model, arguments):
     assert model.dynamics(q, qd, out=out, threads=1).mass_matrix is out.mass_matrix
 
 
-@pytest.mark.parametrize('wrong', [
-    (np.zeros(5), np.zeros(4)), (np.zeros(4), np.zeros(3)), (np.zeros(()), np.zeros(4)),
-    (np.zeros(0), np.zeros(4)), ('abcd', np.zeros(4)), (None, None)])
+@pytest.mark.parametrize(
+    'wrong',
+    [
+        (np.zeros(5), np.zeros(4)),
+        (np.zeros(4), np.zeros(3)),
+        (np.zeros(()), np.zeros(4)),
+        (np.zeros(0), np.zeros(4)),
+        ('abcd', np.zeros(4)),
+        (None, None),
+    ],
+)
 def test_wrong_arguments_are_refused_as_ever(model, wrong):
     with pytest.raises((ArgumentError, TypeError, ValueError)):
         model.dynamics(*wrong)
@@ -182,9 +214,12 @@ def test_large_angles_are_left_to_the_general_kernel(model, arguments):
 
 def test_a_robot_without_inertia_behind_a_joint_is_refused_as_ever():
     # A massless tip behind the arm's last joint: D is singular, wherever the arm is.
-    text = random_urdf(12, joints=2, with_mimic=False).replace('</robot>', """
+    text = random_urdf(12, joints=2, with_mimic=False).replace(
+        '</robot>',
+        """
         <link name="tip"/><joint name="last" type="continuous"><parent link="link1"/>
-        <child link="tip"/><axis xyz="0 0 1"/></joint></robot>""")
+        <child link="tip"/><axis xyz="0 0 1"/></joint></robot>""",
+    )
     model = RobotModel.from_urdf(text)
     states = np.random.default_rng(1).uniform(-1.0, 1.0, (3, 3))
     assert model.specialise()
@@ -206,6 +241,7 @@ def test_addresses_cannot_be_written(model):
 
 def test_other_users_of_ctypes_see_nothing():
     import ctypes
+
     for name in call._SYMBOLS:
         assert getattr(ctypes.pythonapi, name).argtypes is None
 
@@ -214,8 +250,9 @@ def test_gravity_is_each_models_own(model, arguments):
     other = model.with_gravity((1.0, -2.0, 3.0))
     assert inspect.isbuiltin(other.gravity_torque)
     expected = other._evaluation.gravity_torque(arguments[0])
-    np.testing.assert_allclose(other.gravity_torque(arguments[0]), expected, rtol=0,
-                               atol=1e-12 * np.abs(expected).max())
+    np.testing.assert_allclose(
+        other.gravity_torque(arguments[0]), expected, rtol=0, atol=1e-12 * np.abs(expected).max()
+    )
     assert not np.allclose(expected, model.gravity_torque(arguments[0]))
 
 
@@ -240,8 +277,9 @@ def test_a_function_keeps_the_payload_that_it_was_made_with(model, arguments):
     # Memory that was freed would be taken by these.
     garbage = [np.full(model._evaluation.packed[1].shape, np.nan) for _ in range(100)]
     for function, wanted in zip(functions, expected, strict=True):
-        np.testing.assert_allclose(function(arguments[0]), wanted, rtol=0,
-                                   atol=1e-12 * np.abs(wanted).max())
+        np.testing.assert_allclose(
+            function(arguments[0]), wanted, rtol=0, atol=1e-12 * np.abs(wanted).max()
+        )
     assert len(garbage) == 100
 
 

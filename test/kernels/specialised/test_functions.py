@@ -26,7 +26,8 @@ def test_a_batch_of_any_size_is_the_general_kernels(model, lanes):
     text = '\n'.join([*declarations(lanes), functions.batch_function(quantity, lanes)])
     loaded = machine.LoadedCode([machine.compile_code(text)], ['dynamics_batch'])
     function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 6, ctypes.c_int64)(
-        loaded.address('dynamics_batch'))
+        loaded.address('dynamics_batch')
+    )
     n, rng = len(model.joint_names), np.random.default_rng(2)
     for count in (lanes, lanes + 1, 2 * lanes - 1, 2 * lanes, 5 * lanes + 3):
         q, qd = rng.uniform(-3.0, 3.0, (2, count, n))
@@ -35,6 +36,7 @@ def test_a_batch_of_any_size_is_the_general_kernels(model, lanes):
         arrays = [q, qd, packed[1], *outputs]
         function(*(array.ctypes.data for array in arrays), count)
         for mine, theirs in zip(outputs, model._evaluation.dynamics(q, qd), strict=True):
-            np.testing.assert_allclose(mine[:-1], theirs, rtol=0,
-                                       atol=1e-13 * (np.abs(theirs).max() + 1e-3))
+            np.testing.assert_allclose(
+                mine[:-1], theirs, rtol=0, atol=1e-13 * (np.abs(theirs).max() + 1e-3)
+            )
             assert (mine[-1] == 7.0).all()

@@ -17,8 +17,10 @@ def evaluate(quantity, model, **inputs):
     results = [value for output in quantity.outputs for value in output.flat]
     numbers = model._evaluation.packed[1].ravel()
     values = iter(run(quantity.program, results, numbers=numbers, **inputs))
-    return [np.array([next(values) for _ in output.flat]).reshape(output.shape)
-            for output in quantity.outputs]
+    return [
+        np.array([next(values) for _ in output.flat]).reshape(output.shape)
+        for output in quantity.outputs
+    ]
 
 
 def assert_close(actual, expected):
@@ -35,14 +37,16 @@ def hold_against_the_general_kernel(model, rng, recorded_from=None):
         packed = *recorded_from._evaluation.packed, True
     D, C, G = model._evaluation.dynamics(q, qd)
     tau = model._evaluation.inverse_dynamics(q, qd, qdd)
-    for actual, expected in zip(evaluate(quantities.dynamics(*packed), model, q=q, qd=qd),
-                                (D, C, G), strict=True):
+    for actual, expected in zip(
+        evaluate(quantities.dynamics(*packed), model, q=q, qd=qd), (D, C, G), strict=True
+    ):
         assert_close(actual, expected)
     assert_close(evaluate(quantities.mass_matrix(*packed), model, q=q)[0], D)
     assert_close(evaluate(quantities.coriolis_matrix(*packed), model, q=q, qd=qd)[0], C)
     assert_close(evaluate(quantities.gravity_torque(*packed), model, q=q)[0], G)
-    assert_close(evaluate(quantities.inverse_dynamics(*packed), model, q=q, qd=qd, qdd=qdd)[0],
-                 tau)
+    assert_close(
+        evaluate(quantities.inverse_dynamics(*packed), model, q=q, qd=qd, qdd=qdd)[0], tau
+    )
     # What comes back is as exact as D is well-conditioned.
     back = evaluate(quantities.forward_dynamics(*packed), model, q=q, qd=qd, tau=tau)[0]
     np.testing.assert_allclose(D @ back, D @ qdd, rtol=0, atol=1e-11 * np.abs(tau).max())
@@ -78,8 +82,9 @@ def test_every_quantity_on_our_robots(path):
 def test_the_signatures_are_those_of_the_programs():
     model = RobotModel.from_urdf(PENDULUM)
     recorded = [record(*pack(model.tree, model.gravity)) for record in quantities.ALL]
-    assert {quantity.name: (quantity.inputs, len(quantity.outputs))
-            for quantity in recorded} == quantities.SIGNATURES
+    assert {
+        quantity.name: (quantity.inputs, len(quantity.outputs)) for quantity in recorded
+    } == quantities.SIGNATURES
 
 
 def test_a_straight_line_is_shorter_than_the_loops():
@@ -99,9 +104,13 @@ def test_for_any_inertia_no_number_of_the_recorded_robot_is_left():
     for record in quantities.ALL:
         programs = [record(structure, values, True).program for values in (numbers, other)]
         assert repr([operation.name for operation in programs[0].operations]) == repr(
-            [operation.name for operation in programs[1].operations])
-        assert not any(isinstance(argument, float) and np.isnan(argument)
-                       for operation in programs[1].operations for argument in operation.arguments)
+            [operation.name for operation in programs[1].operations]
+        )
+        assert not any(
+            isinstance(argument, float) and np.isnan(argument)
+            for operation in programs[1].operations
+            for argument in operation.arguments
+        )
 
 
 def test_robots_with_very_many_joints_are_not_recorded():

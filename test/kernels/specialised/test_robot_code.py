@@ -44,10 +44,11 @@ def test_code_of_another_robot_is_refused(packed):
 def test_one_wrong_function_is_enough(packed, name, monkeypatch):
     # Each quantity is recorded with a mass of its own, in one function after the other.
     heavier = packed[1].copy()
-    heavier[0, closed_form.INERTIA:closed_form.MULTIPLIER] *= 1.0 + 1e-6
+    heavier[0, closed_form.INERTIA : closed_form.MULTIPLIER] *= 1.0 + 1e-6
     right = {record.__name__: record for record in quantities.ALL}
-    records = [(lambda s, n, a, f=f, k=k: f(s, heavier if k == name else n, a))
-               for k, f in right.items()]
+    records = [
+        (lambda s, n, a, f=f, k=k: f(s, heavier if k == name else n, a)) for k, f in right.items()
+    ]
     monkeypatch.setattr(quantities, 'ALL', records)
     wrong = robot_code.compile_robot(*packed)
     if name == 'coriolis_matrix':
@@ -58,30 +59,36 @@ def test_one_wrong_function_is_enough(packed, name, monkeypatch):
         robot_code.RobotCode(*packed, wrong)
 
 
-@pytest.mark.parametrize('name', [name for name in quantities.SIGNATURES
-                                  if name != 'coriolis_matrix'])
+@pytest.mark.parametrize(
+    'name', [name for name in quantities.SIGNATURES if name != 'coriolis_matrix']
+)
 def test_one_wrong_function_for_any_inertia_is_enough(packed, name, monkeypatch):
     # Recorded with an axis that is too long.
     other = packed[1].copy()
-    other[0, closed_form.AXIS:closed_form.INERTIA] *= 1.0 + 1e-6
+    other[0, closed_form.AXIS : closed_form.INERTIA] *= 1.0 + 1e-6
     right = {record.__name__: record for record in quantities.ALL}
-    records = [(lambda s, n, a, f=f, k=k: f(s, other if k == name else n, a))
-               for k, f in right.items()]
+    records = [
+        (lambda s, n, a, f=f, k=k: f(s, other if k == name else n, a)) for k, f in right.items()
+    ]
     monkeypatch.setattr(quantities, 'ALL', records)
     wrong = robot_code.compile_robot(*packed, True)
     with pytest.raises(RuntimeError, match=f'{name}: the machine code computes something else'):
         robot_code.RobotCode(*packed, wrong, True)
 
 
-@pytest.mark.parametrize('column', [closed_form.INERTIA, closed_form.INERTIA + 5,
-                                    closed_form.ROTOR])
+@pytest.mark.parametrize(
+    'column', [closed_form.INERTIA, closed_form.INERTIA + 5, closed_form.ROTOR]
+)
 def test_for_any_inertia_every_number_must_have_been_read(column, monkeypatch):
     model = RobotModel.from_urdf(random_urdf(12, joints=2))
     packed = pack(model.tree, model.gravity)
     right = quantities.input_places
     with monkeypatch.context() as patch:
-        patch.setattr(quantities, 'input_places', lambda *arguments: [
-            place for place in right(*arguments) if place != (1, column)])
+        patch.setattr(
+            quantities,
+            'input_places',
+            lambda *arguments: [place for place in right(*arguments) if place != (1, column)],
+        )
         wrong = robot_code.compile_robot(*packed, True)
     with pytest.raises(RuntimeError, match='computes something else'):
         robot_code.RobotCode(*packed, wrong, True)
@@ -89,13 +96,15 @@ def test_for_any_inertia_every_number_must_have_been_read(column, monkeypatch):
 
 def test_for_any_inertia_it_is_one_for_all_inertias_and_beside_the_robots_own(packed, folder):
     heavier = packed[1].copy()
-    heavier[0, closed_form.INERTIA:closed_form.MULTIPLIER] *= 3.0
+    heavier[0, closed_form.INERTIA : closed_form.MULTIPLIER] *= 3.0
     heavier[0, closed_form.ROTOR] = 1.0
     code = robot_code.make(*packed, True)
     assert robot_code.make(packed[0], heavier, True) is code
     assert robot_code.make(*packed) is not code
     assert {path.name for path in folder.iterdir()} == {
-        store.key(*packed), store.key(*packed, True)}
+        store.key(*packed),
+        store.key(*packed, True),
+    }
 
 
 def test_models_of_one_robot_share_it(packed):

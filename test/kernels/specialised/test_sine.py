@@ -16,8 +16,15 @@ def compiled(lanes):
     x = code.line(f'load {code.number}, ptr %x, align 8')
     for value, pointer in zip(sine_and_cosine(code, x), ('%sin', '%cos'), strict=True):
         code.do(f'store {code.number} {value}, ptr {pointer}, align 8')
-    text = '\n'.join([*declarations(lanes), 'define void @f(ptr %x, ptr %sin, ptr %cos) {',
-                      *code.lines, '  ret void', '}'])
+    text = '\n'.join(
+        [
+            *declarations(lanes),
+            'define void @f(ptr %x, ptr %sin, ptr %cos) {',
+            *code.lines,
+            '  ret void',
+            '}',
+        ]
+    )
     loaded = machine.LoadedCode([machine.compile_code(text)], ['f'])
     function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3)(loaded.address('f'))
 

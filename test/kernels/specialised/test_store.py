@@ -31,9 +31,15 @@ def test_the_folder_is_for_its_owner_alone(folder):
     assert folder.stat().st_mode & 0o077 == 0
 
 
-@pytest.mark.parametrize('damage', [
-    lambda content: content[:-1], lambda content: b'', lambda content: content + b'x',
-    lambda content: content[:500] + bytes([content[500] ^ 1]) + content[501:]])
+@pytest.mark.parametrize(
+    'damage',
+    [
+        lambda content: content[:-1],
+        lambda content: b'',
+        lambda content: content + b'x',
+        lambda content: content[:500] + bytes([content[500] ^ 1]) + content[501:],
+    ],
+)
 def test_a_damaged_file_counts_as_missing(folder, damage):
     store.save('name', CODE)
     path = folder / 'name'
@@ -115,7 +121,11 @@ def test_files_that_are_not_ours_stay(folder, monkeypatch):
     store.save(f'{1:064x}', CODE)
     store.save(f'{2:064x}', CODE)
     assert sorted(path.name for path in folder.iterdir()) == [
-        f'{2:064x}', 'name', 'photo.jpg', 'thesis.tex']
+        f'{2:064x}',
+        'name',
+        'photo.jpg',
+        'thesis.tex',
+    ]
 
 
 def test_without_a_home_there_is_no_place(monkeypatch):
@@ -163,8 +173,9 @@ def test_the_key_for_any_inertia_knows_neither_inertia_nor_rotors_but_all_else()
     for column in range(closed_form.WIDTH):
         other = numbers.copy()
         other[3, column] += 1.0
-        is_input = (closed_form.INERTIA <= column < closed_form.MULTIPLIER
-                    or column == closed_form.ROTOR)
+        is_input = (
+            closed_form.INERTIA <= column < closed_form.MULTIPLIER or column == closed_form.ROTOR
+        )
         assert (store.key(structure, other, True) == key) == is_input
         assert store.key(structure, other) != store.key(structure, numbers)
     tree = structure.copy()

@@ -60,7 +60,17 @@ def test_operations_are_those_of_floats(program, x, y):
     a, b = 0.7, -1.9
     results = [x + y, x - y, x * y, x / y, -x, np.sin(x), np.cos(y), 1.0 / x, 3.0 - x, 2.5 * y]
     assert run(program, results, x=[a, b]) == [
-        a + b, a - b, a * b, a / b, -a, math.sin(a), math.cos(b), 1.0 / a, 3.0 - a, 2.5 * b]
+        a + b,
+        a - b,
+        a * b,
+        a / b,
+        -a,
+        math.sin(a),
+        math.cos(b),
+        1.0 / a,
+        3.0 - a,
+        2.5 * b,
+    ]
 
 
 def test_numpys_numbers_hand_over(x):

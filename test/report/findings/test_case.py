@@ -19,11 +19,18 @@ def test_masses_and_lengths_of_an_arm():
 
 
 def test_a_cycle_ends():
-    text = ('<robot name="r"><link name="a"/><link name="b"/>' + ''.join(
-        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
-        f'<limit lower="0" upper="1"/></joint>'
-        for name, kind, parent, child in (('j', 'revolute', 'a', 'b'),
-                                          ('k', 'fixed', 'b', 'a'))) + '</robot>')
+    text = (
+        '<robot name="r"><link name="a"/><link name="b"/>'
+        + ''.join(
+            f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+            f'<limit lower="0" upper="1"/></joint>'
+            for name, kind, parent, child in (
+                ('j', 'revolute', 'a', 'b'),
+                ('k', 'fixed', 'b', 'a'),
+            )
+        )
+        + '</robot>'
+    )
     report = make_report(text, samples=10)
     assert report.verdict == 'refused'
     case = Case(report, examine_urdf(text), None)

@@ -6,8 +6,9 @@ from support.arms import arm, changed
 
 def findings(text):
     """Return the findings of the kind."""
-    return [finding for finding in make_report(text, samples=300).findings
-            if finding.kind == 'far_com']
+    return [
+        finding for finding in make_report(text, samples=300).findings if finding.kind == 'far_com'
+    ]
 
 
 def test_millimetres_written_as_metres_are_found():

@@ -7,8 +7,7 @@ from support.arms import arm, changed, rod
 
 def findings(text, kind):
     """Return the findings of a kind."""
-    return [finding for finding in make_report(text, samples=300).findings
-            if finding.kind == kind]
+    return [finding for finding in make_report(text, samples=300).findings if finding.kind == kind]
 
 
 @pytest.mark.parametrize('value', [1.0, 1e-6, 1e-9])

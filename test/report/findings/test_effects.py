@@ -36,7 +36,8 @@ def test_torques_of_another_mass(case):
     after = worst(arms.changed(arms.arm(), 'link3', mass=6.0), 'joint2')
     assert effect.text == (
         f"the largest gravity torque of joint 'joint2' would be {after:.3g} N m instead of "
-        f'{before:.3g} N m (+{100.0 * (after / before - 1.0):.3g} %) if it weighed 6 kg')
+        f'{before:.3g} N m (+{100.0 * (after / before - 1.0):.3g} %) if it weighed 6 kg'
+    )
     assert effect.share == pytest.approx(after / before - 1.0, rel=1e-6)
 
 
@@ -56,14 +57,18 @@ def test_a_payload(case):
 
 def test_inertia_of_another_tensor(case):
     inertial = case.links['link5'].inertial
-    effect = inertia_effect(case, 'link5', changed(inertial, tensor=0.5 * inertial.tensor),
-                            'with half of it')
+    effect = inertia_effect(
+        case, 'link5', changed(inertial, tensor=0.5 * inertial.tensor), 'with half of it'
+    )
     model = case.study.model
     half = arms.scaled_tensor(arms.arm(), 'link5', 0.5)
     other = Study.begin(examine_urdf(half).description, (0.0, 0.0, -9.81), 1, 1).model
     q = case.study.positions[:256]
-    share = (np.diagonal(model.mass_matrix(q), axis1=1, axis2=2)
-             / np.diagonal(other.mass_matrix(q), axis1=1, axis2=2) - 1.0).max()
+    share = (
+        np.diagonal(model.mass_matrix(q), axis1=1, axis2=2)
+        / np.diagonal(other.mass_matrix(q), axis1=1, axis2=2)
+        - 1.0
+    ).max()
     assert effect.share == pytest.approx(share)
     assert f'up to {100.0 * share:.3g} % more inertia (D_jj) than with half of it' in effect.text
 

@@ -7,16 +7,55 @@ import pytest
 from support.robots import PENDULUM, public_robot, public_robots, random_urdf
 
 # Public robots about which nothing is to be said but notes.
-CLEAN = {'panda.urdf', 'kinova.urdf', 'z1.urdf', 'xarm7.urdf',
-         'so100.urdf', 'so101.urdf', 'solo12.urdf', 'go2.urdf', 'b1-z1.urdf',
-         'anymal.urdf', 'centauro.urdf', 'tiago_no_hand.urdf', 'ur10_robot.urdf'}
+CLEAN = {
+    'panda.urdf',
+    'kinova.urdf',
+    'z1.urdf',
+    'xarm7.urdf',
+    'so100.urdf',
+    'so101.urdf',
+    'solo12.urdf',
+    'go2.urdf',
+    'b1-z1.urdf',
+    'anymal.urdf',
+    'centauro.urdf',
+    'tiago_no_hand.urdf',
+    'ur10_robot.urdf',
+}
 
 
 # Each kind of robot once: those that differ in a limit, a box or a hand take long.
-ROBOTS = [name for name in public_robots() if not any(part in name for part in (
-    '_box', '_corrected', 'talos_full', 'tiago_dual', 'tiago.urdf', 'tiago_pro', 'romeo.urdf',
-    'romeo_small', 'classical', 'limited', 'collision', 'icub_reduced', '_right', 'pendulum_',
-    'anymal-kinova', 'b1.urdf', 'go1', 'laikago', 'simple.urdf', 'solo.urdf', 'sake', 'human'))]
+ROBOTS = [
+    name
+    for name in public_robots()
+    if not any(
+        part in name
+        for part in (
+            '_box',
+            '_corrected',
+            'talos_full',
+            'tiago_dual',
+            'tiago.urdf',
+            'tiago_pro',
+            'romeo.urdf',
+            'romeo_small',
+            'classical',
+            'limited',
+            'collision',
+            'icub_reduced',
+            '_right',
+            'pendulum_',
+            'anymal-kinova',
+            'b1.urdf',
+            'go1',
+            'laikago',
+            'simple.urdf',
+            'solo.urdf',
+            'sake',
+            'human',
+        )
+    )
+]
 
 
 @pytest.mark.parametrize('name', ROBOTS)

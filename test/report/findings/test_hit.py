@@ -6,8 +6,16 @@ from dynamics_node.report.findings.hit import Hit, told
 
 def hit(subject, weight=0.0, advice='mend it', severity='warning'):
     """Return a hit."""
-    return Hit(severity, 'grams', subject, f'{subject} is light', '7 g',
-               lambda: Effect(f'{subject} sinks', 1.0), advice, weight)
+    return Hit(
+        severity,
+        'grams',
+        subject,
+        f'{subject} is light',
+        '7 g',
+        lambda: Effect(f'{subject} sinks', 1.0),
+        advice,
+        weight,
+    )
 
 
 def test_one_is_told_as_it_is():

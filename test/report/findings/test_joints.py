@@ -6,8 +6,7 @@ from support.arms import arm, changed
 
 def findings(text, kind):
     """Return the findings of a kind."""
-    return [finding for finding in make_report(text, samples=300).findings
-            if finding.kind == kind]
+    return [finding for finding in make_report(text, samples=300).findings if finding.kind == kind]
 
 
 def test_a_missing_axis_is_told_with_the_torque_about_z():
@@ -45,13 +44,19 @@ def test_every_warning_of_the_model_is_in_the_report():
     report = make_report(text, samples=100)
     assert len(report.model.warnings) == 5
     kinds = {finding.kind for finding in report.findings}
-    assert kinds >= {'missing_axis', 'axis_length', 'negative_friction', 'triangle_inequality',
-                     'shape_without_mass'}
+    assert kinds >= {
+        'missing_axis',
+        'axis_length',
+        'negative_friction',
+        'triangle_inequality',
+        'shape_without_mass',
+    }
     assert 'reader_warning' not in kinds
 
 
 def test_a_warning_that_nobody_knows_is_told_as_it_is(monkeypatch):
     from dynamics_node.report.findings import joints
+
     monkeypatch.setattr(joints, '_ELSEWHERE', ())
     [found] = findings(changed(arm(), 'joint1', axis=False), 'reader_warning')
     assert found.what == "joint 'joint1': axis is missing, (1, 0, 0) is used"

@@ -11,10 +11,12 @@ SOURCES = ROOT / 'dynamics_node' / 'report' / 'findings'
 
 
 def test_every_kind_is_found_by_somebody_and_tested():
-    code = ' '.join(path.read_text() for path in SOURCES.glob('*.py')
-                    if path.name != 'kinds.py')
-    tests = ' '.join(path.read_text() for path in Path(__file__).parent.glob('test_*.py')
-                     if path != Path(__file__))
+    code = ' '.join(path.read_text() for path in SOURCES.glob('*.py') if path.name != 'kinds.py')
+    tests = ' '.join(
+        path.read_text()
+        for path in Path(__file__).parent.glob('test_*.py')
+        if path != Path(__file__)
+    )
     for kind, (severities, meaning) in KINDS.items():
         assert f"'{kind}'" in code, kind
         assert f"'{kind}'" in tests, kind
@@ -22,8 +24,11 @@ def test_every_kind_is_found_by_somebody_and_tested():
 
 
 def test_the_document_explains_every_kind_as_it_is():
-    rows = re.findall(r'^\| `(\w+)` \| ([a-z, ]+) \| (.+?) \|',
-                      (ROOT / 'docs' / 'report.md').read_text(), re.MULTILINE)
+    rows = re.findall(
+        r'^\| `(\w+)` \| ([a-z, ]+) \| (.+?) \|',
+        (ROOT / 'docs' / 'report.md').read_text(),
+        re.MULTILINE,
+    )
     assert [kind for kind, *_ in rows] == list(KINDS)
     for kind, severities, meaning in rows:
         assert severities.split(', ') == list(KINDS[kind][0]), kind

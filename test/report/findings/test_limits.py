@@ -8,8 +8,9 @@ from support.arms import arm, changed, pendulum
 
 def findings(text, kind):
     """Return the findings of a kind."""
-    return [finding for finding in make_report(text, samples=2000).findings
-            if finding.kind == kind]
+    return [
+        finding for finding in make_report(text, samples=2000).findings if finding.kind == kind
+    ]
 
 
 def test_gravity_above_the_limit_is_told_with_how_often():
@@ -22,9 +23,15 @@ def test_gravity_above_the_limit_is_told_with_how_often():
     assert not findings(pendulum(2.0, 0.4, effort=7.9), 'over_effort_limit')
 
 
-@pytest.mark.parametrize('limit, kind', [
-    ({'effort': None}, 'no_effort_limit'), ({'effort': 'inf'}, 'no_effort_limit'),
-    ({'effort': 0}, 'zero_effort_limit'), ({'effort': -3}, 'zero_effort_limit')])
+@pytest.mark.parametrize(
+    'limit, kind',
+    [
+        ({'effort': None}, 'no_effort_limit'),
+        ({'effort': 'inf'}, 'no_effort_limit'),
+        ({'effort': 0}, 'zero_effort_limit'),
+        ({'effort': -3}, 'zero_effort_limit'),
+    ],
+)
 def test_an_effort_limit_that_is_none(limit, kind):
     [found] = findings(changed(arm(), 'joint2', limit=limit), kind)
     assert (found.severity, found.subjects) == ('warning', ('joint2',))
@@ -38,16 +45,16 @@ def test_a_joint_that_gravity_does_not_load_needs_no_limit_that_much():
 
 @pytest.mark.parametrize('velocity', [None, 0])
 def test_no_velocity_limit_is_a_note(velocity):
-    [found] = findings(changed(arm(), 'joint4', limit={'velocity': velocity}),
-                       'no_velocity_limit')
+    [found] = findings(changed(arm(), 'joint4', limit={'velocity': velocity}), 'no_velocity_limit')
     assert (found.severity, found.subjects) == ('note', ('joint4',))
     assert ('a velocity limit of 0' if velocity == 0 else 'no velocity limit') in found.what
 
 
 @pytest.mark.parametrize('lower, upper', [(0, 0), (1, -1), (0.5, 0.5)])
 def test_an_empty_range_is_a_warning(lower, upper):
-    [found] = findings(changed(arm(), 'joint3', limit={'lower': lower, 'upper': upper}),
-                       'empty_range')
+    [found] = findings(
+        changed(arm(), 'joint3', limit={'lower': lower, 'upper': upper}), 'empty_range'
+    )
     assert (found.severity, found.subjects) == ('warning', ('joint3',))
     assert 'counts as a joint without limits' in found.effect
 

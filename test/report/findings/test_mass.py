@@ -15,8 +15,11 @@ XARM7 = 'xarm_description/urdf/xarm7.urdf'
 
 def findings(text, kind, **options):
     """Return the findings of a kind."""
-    return [finding for finding in make_report(text, samples=500, **options).findings
-            if finding.kind == kind]
+    return [
+        finding
+        for finding in make_report(text, samples=500, **options).findings
+        if finding.kind == kind
+    ]
 
 
 def test_a_sound_arm_has_no_findings():
@@ -36,11 +39,14 @@ def test_a_link_of_7_g_is_found_and_what_it_hides_is_computed(link, mass):
 def test_the_effect_of_7_g_is_that_of_the_robot_with_7_kg():
     text = changed(arm(), 'link2', mass=0.007)
     [found] = findings(text, 'grams')
-    before, after = (make_report(changed(text, 'link2', mass=mass), samples=500)
-                     for mass in (0.007, 7.0))
+    before, after = (
+        make_report(changed(text, 'link2', mass=mass), samples=500) for mass in (0.007, 7.0)
+    )
     joint = next(name for name in after.joint_names if f"'{name}'" in found.effect)
-    said = [next(entry.gravity.magnitude for entry in report.joints if entry.name == joint)
-            for report in (after, before)]
+    said = [
+        next(entry.gravity.magnitude for entry in report.joints if entry.name == joint)
+        for report in (after, before)
+    ]
     assert f'would be {said[0]:.3g} N m instead of {said[1]:.3g} N m' in found.effect
 
 
@@ -57,8 +63,10 @@ def test_7_g_in_a_public_arm_are_found_with_and_without_its_inertia(factor):
 
 def test_a_last_link_in_grams_is_found_with_and_without_its_inertia():
     text = arm(tool=False)
-    for broken in (changed(text, 'link5', mass=0.0008), changed(
-            changed(text, 'link5', mass=0.0008), 'link5', tensor=1e-7)):
+    for broken in (
+        changed(text, 'link5', mass=0.0008),
+        changed(changed(text, 'link5', mass=0.0008), 'link5', tensor=1e-7),
+    ):
         [found] = findings(broken, 'grams')
         assert found.subjects == ('link5',) and 'if it weighed 0.8 kg' in found.effect
 
@@ -103,8 +111,11 @@ def test_a_light_link_between_light_ones_is_no_finding():
 def test_a_robot_without_any_inertial_is_told_once_and_loudly(take):
     text = arm()
     for link in ('link1', 'link2', 'link3', 'link4', 'link5', 'gripper'):
-        text = (changed(text, link, inertial=False) if take == 'inertial'
-                else changed(text, link, mass=0.0, tensor=0.0))
+        text = (
+            changed(text, link, inertial=False)
+            if take == 'inertial'
+            else changed(text, link, mass=0.0, tensor=0.0)
+        )
     report = make_report(text, samples=100)
     assert [finding.kind for finding in report.findings] == ['no_inertial']
     [found] = report.findings
@@ -127,15 +138,19 @@ def test_a_shape_without_mass_at_the_end_is_a_warning_with_what_it_could_weigh()
 
 
 def test_a_shape_without_mass_in_the_middle_may_be_in_its_neighbour():
-    cover = ('<link name="cover"><visual><geometry><sphere radius="1"/></geometry></visual></link>'
-             '<joint name="c" type="fixed"><parent link="link2"/><child link="cover"/></joint>')
+    cover = (
+        '<link name="cover"><visual><geometry><sphere radius="1"/></geometry></visual></link>'
+        '<joint name="c" type="fixed"><parent link="link2"/><child link="cover"/></joint>'
+    )
     [found] = findings(arm().replace('</robot>', cover + '</robot>'), 'shape_without_mass')
     assert found.severity == 'note'
 
 
 def test_frames_without_shape_are_no_findings():
-    frames = ('<link name="camera"/><joint name="c" type="fixed"><parent link="link2"/>'
-              '<child link="camera"/></joint>')
+    frames = (
+        '<link name="camera"/><joint name="c" type="fixed"><parent link="link2"/>'
+        '<child link="camera"/></joint>'
+    )
     assert not make_report(arm().replace('</robot>', frames + '</robot>'), samples=100).findings
 
 

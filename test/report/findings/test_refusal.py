@@ -44,7 +44,8 @@ def test_what_could_be_read_is_shown():
 
 def test_many_reasons_are_one_finding_with_all_of_them():
     report = make_report(
-        public_robot('alex_description/urdf/alex_psyonic_hands.urdf'), samples=100)
+        public_robot('alex_description/urdf/alex_psyonic_hands.urdf'), samples=100
+    )
     [found] = [finding for finding in report.findings if finding.kind == 'refused']
     assert len(report.refusals) == 8
     for reason in report.refusals:
@@ -55,9 +56,10 @@ def test_what_only_the_model_refuses_is_told_too():
     # Mimic joints that multiply each other to numbers that no robot has.
     text = arm()
     for i in range(2, 6):
-        text = text.replace(f'name="joint{i}" type="revolute">',
-                            f'name="joint{i}" type="revolute"><mimic joint="joint{i - 1}" '
-                            'multiplier="1e20"/>')
+        text = text.replace(
+            f'name="joint{i}" type="revolute">',
+            f'name="joint{i}" type="revolute"><mimic joint="joint{i - 1}" multiplier="1e20"/>',
+        )
     report = make_report(text, samples=20)
     told = [finding.what for finding in report.findings if finding.kind == 'refused']
     assert report.verdict == 'refused' and told == list(report.refusals)

@@ -13,8 +13,7 @@ XARM7 = 'xarm_description/urdf/xarm7.urdf'
 
 def findings(text, kind):
     """Return the findings of a kind."""
-    return [finding for finding in make_report(text, samples=300).findings
-            if finding.kind == kind]
+    return [finding for finding in make_report(text, samples=300).findings if finding.kind == kind]
 
 
 def diagonal(text, q):
@@ -29,8 +28,10 @@ def test_a_missing_decimal_point_is_found_and_mended(link, entry):
     [found] = findings(changed(text, link, tensor={entry: 10.0 * right}), 'triangle_inequality')
     assert (found.severity, found.subjects) == ('problem', (link,))
     # It passes the positive definite check: the robot is taken, with a warning.
-    assert make_report(changed(text, link, tensor={entry: 10.0 * right}),
-                       samples=100).verdict == 'usable'
+    assert (
+        make_report(changed(text, link, tensor={entry: 10.0 * right}), samples=100).verdict
+        == 'usable'
+    )
     assert f'{entry}="{right:.6g}" belongs to a real body' in found.advice
     assert '10 times too large' in found.advice
     assert 'gravity torques do not change' in found.effect
@@ -46,8 +47,9 @@ def test_the_effect_of_a_missing_decimal_point_is_that_on_d():
     share = before / diagonal(changed(broken, 'link5', tensor={'ixx': mended}), np.zeros(5))[4]
     assert "joint 'joint5'" in after
     said = after.split('up to ')[1]
-    assert said.startswith(f'{share - 1.0:.3g} times more' if share > 11.0
-                           else f'{100.0 * (share - 1.0):.3g} % more')
+    assert said.startswith(
+        f'{share - 1.0:.3g} times more' if share > 11.0 else f'{100.0 * (share - 1.0):.3g} % more'
+    )
 
 
 def test_a_public_arm_with_a_missing_decimal_point():
@@ -114,8 +116,13 @@ def test_a_tensor_about_the_frame_is_found_where_products_tell():
         text = changed(arm(), 'link3', mass=mass, com=com.tolist(), tensor=entries)
         found = findings(text, 'tensor_not_about_com')
         assert len(found) == count
-    text = changed(arm(), 'link3', mass=mass, com=com.tolist(), tensor=dict(
-        zip(names, about_frame[np.triu_indices(3)].tolist(), strict=True)))
+    text = changed(
+        arm(),
+        'link3',
+        mass=mass,
+        com=com.tolist(),
+        tensor=dict(zip(names, about_frame[np.triu_indices(3)].tolist(), strict=True)),
+    )
     [found] = findings(text, 'tensor_not_about_com')
     assert 'more inertia (D_jj) than with the tensor moved' in found.effect
 
@@ -127,14 +134,18 @@ def test_a_negative_multiple_of_the_identity_is_refused_and_told():
 
 
 def test_an_excess_of_rounding_is_no_1_times():
-    [found] = findings(changed(arm(), 'link3', tensor={'ixx': 0.01, 'iyy': 0.01, 'izz': 0.02008}),
-                       'triangle_inequality')
+    [found] = findings(
+        changed(arm(), 'link3', tensor={'ixx': 0.01, 'iyy': 0.01, 'izz': 0.02008}),
+        'triangle_inequality',
+    )
     assert '0.4 % more than the sum of the two others' in found.what
 
 
 def test_rounding_is_not_shown_as_a_moment():
-    [found] = findings(changed(arm(), 'link3', tensor={'ixx': -1e-22, 'iyy': 0.02, 'izz': 8e-23}),
-                       'triangle_inequality')
+    [found] = findings(
+        changed(arm(), 'link3', tensor={'ixx': -1e-22, 'iyy': 0.02, 'izz': 8e-23}),
+        'triangle_inequality',
+    )
     assert 'the two others are 0 and 0' in found.what
 
 

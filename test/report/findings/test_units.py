@@ -12,8 +12,7 @@ SOLO = 'solo_description/robots/solo12.urdf'
 
 def findings(text, kind):
     """Return the findings of a kind."""
-    return [finding for finding in make_report(text, samples=300).findings
-            if finding.kind == kind]
+    return [finding for finding in make_report(text, samples=300).findings if finding.kind == kind]
 
 
 def test_limits_in_degrees_are_found_with_what_they_do():
@@ -23,15 +22,15 @@ def test_limits_in_degrees_are_found_with_what_they_do():
     assert (found.severity, len(found.subjects)) == ('warning', 5)
     assert '22.9 to 68.8 rad' in found.what and 'upper="1.2"' in found.advice
     right = make_report(arm(limits=limits), samples=300)
-    joint = next(joint for joint in right.joints
-                 if f"of joint '{joint.name}'" in found.effect)
+    joint = next(joint for joint in right.joints if f"of joint '{joint.name}'" in found.effect)
     assert f'{joint.gravity.magnitude:.3g} N m if they are degrees' in found.effect
 
 
 def test_a_few_turns_and_one_joint_that_turns_for_ever_are_no_degrees():
     assert not findings(arm(limits=(-2.0 * math.tau, 2.0 * math.tau)), 'limits_in_degrees')
-    assert not findings(changed(arm(), 'joint5', limit={'lower': -100, 'upper': 100}),
-                        'limits_in_degrees')
+    assert not findings(
+        changed(arm(), 'joint5', limit={'lower': -100, 'upper': 100}), 'limits_in_degrees'
+    )
 
 
 @pytest.mark.parametrize('effort, severity', [(2e4, 'note'), (1e6, 'warning')])

@@ -20,12 +20,31 @@ from support.report_pages import (
     weak_report,
 )
 
-REPORTS = {'arm7': arm7_report, 'weak': weak_report, 'unlimited': unlimited_report,
-           'pendulum': pendulum_report, 'refused': refused_report, 'block': block_report,
-           'hostile': hostile_report}
+REPORTS = {
+    'arm7': arm7_report,
+    'weak': weak_report,
+    'unlimited': unlimited_report,
+    'pendulum': pendulum_report,
+    'refused': refused_report,
+    'block': block_report,
+    'hostile': hostile_report,
+}
 # Every attribute by which a browser asks for something.
-ASKING = {'src', 'href', 'srcset', 'poster', 'action', 'formaction', 'background', 'data',
-          'manifest', 'cite', 'ping', 'longdesc', 'xlink:href'}
+ASKING = {
+    'src',
+    'href',
+    'srcset',
+    'poster',
+    'action',
+    'formaction',
+    'background',
+    'data',
+    'manifest',
+    'cite',
+    'ping',
+    'longdesc',
+    'xlink:href',
+}
 
 
 @pytest.mark.parametrize('report', REPORTS.values(), ids=REPORTS)
@@ -34,10 +53,12 @@ def test_every_element_is_closed_and_every_table_is_complete(report):
     assert [row[0] for row in seen.tables['links'][1:]] == [link.name for link in report.links]
     if report.joints:
         assert [row[0] for row in seen.tables['joints'][1:]] == [
-            joint.name for joint in report.joints]
+            joint.name for joint in report.joints
+        ]
     if report.bodies:
         assert [row[0] for row in seen.tables['bodies'][1:]] == [
-            body.joint for body in report.bodies]
+            body.joint for body in report.bodies
+        ]
     identifiers = [attributes['id'] for _, attributes in seen.elements if 'id' in attributes]
     assert len(identifiers) == len(set(identifiers))
     anchors = [attributes['href'] for _, attributes in seen.elements if 'href' in attributes]
@@ -53,8 +74,10 @@ def test_the_page_refers_to_nothing_outside(report):
         for name in ASKING & set(attributes):
             assert attributes[name].startswith('#'), (tag, name)
         assert not [name for name in attributes if name.startswith('on')]
-    for style in [*seen.styles, *(attributes.get('style') or '' for _, attributes
-                                  in seen.elements)]:
+    for style in [
+        *seen.styles,
+        *(attributes.get('style') or '' for _, attributes in seen.elements),
+    ]:
         assert 'url(' not in style and '@import' not in style
     assert not re.search(r'https?://', ''.join(seen.styles) + ''.join(seen.text))
 
@@ -62,14 +85,18 @@ def test_the_page_refers_to_nothing_outside(report):
 @pytest.mark.parametrize('report', REPORTS.values(), ids=REPORTS)
 def test_the_policy_allows_these_scripts_and_no_network(report):
     seen = reading(report)
-    policy = next(attributes['content'] for tag, attributes in seen.elements
-                  if attributes.get('http-equiv') == 'Content-Security-Policy')
+    policy = next(
+        attributes['content']
+        for tag, attributes in seen.elements
+        if attributes.get('http-equiv') == 'Content-Security-Policy'
+    )
     rules = dict(rule.split(' ', 1) for rule in policy.split('; '))
     assert rules['default-src'] == "'none'" and rules['img-src'] == 'data: blob:'
     kinds = [attributes.get('type') for tag, attributes in seen.elements if tag == 'script']
     run = [script for script, kind in zip(seen.scripts, kinds, strict=True) if kind is None]
-    digests = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-               for script in run]
+    digests = [
+        base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in run
+    ]
     assert rules['script-src'].split() == [f"'sha256-{digest}'" for digest in digests]
 
 
@@ -88,7 +115,8 @@ def test_names_that_are_attacks_stay_names():
     tags = sorted(tag for tag, _ in seen.elements if tag != 'wbr')
     assert tags == sorted(tag for tag, _ in safe.elements if tag != 'wbr')
     assert [row[0] for row in seen.tables['links'][1:]] == [
-        names[row[0]] for row in safe.tables['links'][1:]]
+        names[row[0]] for row in safe.tables['links'][1:]
+    ]
 
 
 def test_the_file_is_written_in_utf_8_and_replaced(tmp_path):
@@ -101,6 +129,8 @@ def test_the_file_is_written_in_utf_8_and_replaced(tmp_path):
 
 
 def test_plotly_is_only_loaded_when_a_page_is_written():
-    code = ('import sys, dynamics_node.report.html\n'
-            'assert not any(name.split(".")[0] == "plotly" for name in sys.modules)')
+    code = (
+        'import sys, dynamics_node.report.html\n'
+        'assert not any(name.split(".")[0] == "plotly" for name in sys.modules)'
+    )
     subprocess.run([sys.executable, '-c', code], check=True)

@@ -14,15 +14,22 @@ from support.report_pages import (
     weak_report,
 )
 
-REPORTS = {'arm7': arm7_report, 'weak': weak_report, 'unlimited': unlimited_report,
-           'pendulum': pendulum_report}
+REPORTS = {
+    'arm7': arm7_report,
+    'weak': weak_report,
+    'unlimited': unlimited_report,
+    'pendulum': pendulum_report,
+}
 
 
 def colored(value):
     """Return a figure with a colour in the place of every name of one."""
     if isinstance(value, dict):
-        return '#123456' if set(value) == {'css'} else {
-            key: colored(part) for key, part in value.items()}
+        return (
+            '#123456'
+            if set(value) == {'css'}
+            else {key: colored(part) for key, part in value.items()}
+        )
     return [colored(part) for part in value] if isinstance(value, list) else value
 
 
@@ -55,5 +62,6 @@ def test_the_joint_that_is_shown_first_is_nearest_to_its_limit():
 
 def test_without_limits_the_joint_with_the_largest_torque_comes_first():
     first = page_data(unlimited_report())['figures']['joint']['first']
-    assert first == int(np.argmax(
-        [joint.gravity.magnitude for joint in loaded_joints(unlimited_report())]))
+    assert first == int(
+        np.argmax([joint.gravity.magnitude for joint in loaded_joints(unlimited_report())])
+    )

@@ -24,7 +24,6 @@ def test_findings_come_first_and_whole(report):
     assert words.index(report.findings[-1].what.lower()) < words.index('as they stand in the urdf')
 
 
-
 def test_a_refused_robot_is_called_so_with_every_reason():
     report = refused_report()
     words = reading(refused_report).words.lower()

@@ -16,16 +16,26 @@ from support.hostile_robot import hostile_urdf
 from support.report_pages import arm7_report, hostile_report, refused_report, weak_report
 from support.robots import ARM7, random_state, random_urdf
 
-PLOTS = ('plot-arm', 'plot-worst', 'plot-distribution', 'plot-curve', 'plot-histogram',
-         'plot-mass')
+PLOTS = (
+    'plot-arm',
+    'plot-worst',
+    'plot-distribution',
+    'plot-curve',
+    'plot-histogram',
+    'plot-mass',
+)
 
 
 @pytest.fixture(scope='module')
 def pages(tmp_path_factory):
     """Return the paths of pages by name, some with the policy taken out of them."""
     folder, paths = tmp_path_factory.mktemp('pages'), {}
-    for name, report in (('arm7', arm7_report), ('weak', weak_report),
-                         ('refused', refused_report), ('hostile', hostile_report)):
+    for name, report in (
+        ('arm7', arm7_report),
+        ('weak', weak_report),
+        ('refused', refused_report),
+        ('hostile', hostile_report),
+    ):
         text = page(report())
         unguarded = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>\n', '', text)
         assert len(unguarded) < len(text)
@@ -56,8 +66,9 @@ def count(tab, selector):
 
 
 def texts(tab, selector):
-    return tab.evaluate(f'[...document.querySelectorAll({json.dumps(selector)})]'
-                        '.map((one) => one.textContent)')
+    return tab.evaluate(
+        f'[...document.querySelectorAll({json.dumps(selector)})].map((one) => one.textContent)'
+    )
 
 
 def of_arm7():
@@ -87,8 +98,11 @@ def test_nothing_is_asked_for_and_nothing_complains(tab, pages):
     assert tab.requests == [pages['arm7'].as_uri()]
     assert tab.complaints == []
     # Plotly has a button that sends a chart to its makers.
-    assert 'Share' not in ' '.join(tab.evaluate(
-        '[...document.querySelectorAll(".modebar-btn")].map((one) => one.dataset.title)'))
+    assert 'Share' not in ' '.join(
+        tab.evaluate(
+            '[...document.querySelectorAll(".modebar-btn")].map((one) => one.dataset.title)'
+        )
+    )
 
 
 def test_what_a_page_asks_for_would_be_seen(flat_tab, pages, tmp_path):
@@ -107,17 +121,20 @@ def test_the_picture_is_not_blank_light_and_dark(tab, pages, tmp_path):
     shades = {}
     for scheme in ('light', 'dark'):
         tab.scheme(scheme)
-        tab.evaluate("document.getElementById('arm-section').scrollIntoView("
-                     "{behavior: 'instant'})")
+        tab.evaluate(
+            "document.getElementById('arm-section').scrollIntoView({behavior: 'instant'})"
+        )
         tab.settle()
         tab.screenshot(tmp_path / 'page.png')
         picture = imread(tmp_path / 'page.png')[..., :3]
         assert picture.shape == (900, 1280, 3)
         shades[scheme] = np.median(picture)
-        box = tab.evaluate('(() => { const b = document.getElementById("plot-arm")'
-                           '.getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()')
+        box = tab.evaluate(
+            '(() => { const b = document.getElementById("plot-arm")'
+            '.getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()'
+        )
         x, y, width, height = map(int, box)
-        view = picture[max(y, 0):y + height, x:x + width]
+        view = picture[max(y, 0) : y + height, x : x + width]
         # The balls are the only things in there that are orange.
         is_orange = (view[..., 0] > 1.5 * view[..., 2]) & (view[..., 0] > 0.3)
         assert is_orange.mean() > 0.001, f'{scheme}: no mass is drawn'
@@ -131,8 +148,11 @@ def test_a_plot_has_the_colours_of_dark_and_light(flat_tab, pages):
     for scheme in ('light', 'dark', 'light'):
         flat_tab.scheme(scheme)
         flat_tab.settle()
-        fills.setdefault(scheme, []).append(flat_tab.evaluate(
-            'getComputedStyle(document.querySelector("#plot-worst .ytick text")).fill'))
+        fills.setdefault(scheme, []).append(
+            flat_tab.evaluate(
+                'getComputedStyle(document.querySelector("#plot-worst .ytick text")).fill'
+            )
+        )
     assert fills['light'][0] == fills['light'][1] != fills['dark'][0]
 
 
@@ -141,16 +161,20 @@ def test_the_page_fits_its_window_opened_in_it_or_made_narrow(flat_tab, pages):
     for width in (320, 1280, 820, 390):
         flat_tab.resize(width)
         for plot in PLOTS[1:]:
-            flat_tab.wait_for(f'(({{ clientWidth, _fullLayout }}) => clientWidth > 0 && '
-                              f'Math.abs(clientWidth - _fullLayout.width) < 1)'
-                              f'(document.getElementById("{plot}"))')
+            flat_tab.wait_for(
+                f'(({{ clientWidth, _fullLayout }}) => clientWidth > 0 && '
+                f'Math.abs(clientWidth - _fullLayout.width) < 1)'
+                f'(document.getElementById("{plot}"))'
+            )
         assert flat_tab.evaluate('document.documentElement.scrollWidth') <= width
     flat_tab.resize(1280)
 
 
 def shown_torques(flat_tab):
-    return [float(text.split('\u00a0')[0].replace('−', '-').split(' ')[0])
-            for text in texts(flat_tab, '#arm-rows .torque')]
+    return [
+        float(text.split('\u00a0')[0].replace('−', '-').split(' ')[0])
+        for text in texts(flat_tab, '#arm-rows .torque')
+    ]
 
 
 def test_a_slider_shows_the_gravity_torque_of_the_model(flat_tab, pages):
@@ -160,7 +184,8 @@ def test_a_slider_shows_the_gravity_torque_of_the_model(flat_tab, pages):
     for place, value in enumerate(q.tolist()):
         flat_tab.evaluate(
             f'(() => {{ const one = document.querySelectorAll("#arm-rows input")[{place}];'
-            f'one.value = {value!r}; one.dispatchEvent(new Event("input")); }})()')
+            f'one.value = {value!r}; one.dispatchEvent(new Event("input")); }})()'
+        )
     expected = report.model.gravity_torque(q)
     # Three digits are shown.
     np.testing.assert_allclose(shown_torques(flat_tab), expected, rtol=0.006, atol=1e-6)
@@ -173,22 +198,27 @@ def test_the_name_of_a_joint_leads_to_its_worst_pose(flat_tab, pages):
     for place, joint in enumerate(joints):
         flat_tab.evaluate(f'document.querySelectorAll("#arm-rows button")[{place}].click()')
         assert shown_torques(flat_tab)[place] == pytest.approx(
-            joint.gravity.worst, rel=0.006, abs=1e-6)
+            joint.gravity.worst, rel=0.006, abs=1e-6
+        )
         assert joint.name in texts(flat_tab, '#arm-caption')[0]
         # The curve goes with it.
         assert flat_tab.evaluate('document.getElementById("plot-curve").data[1].y') == [
-            joint.gravity.worst]
+            joint.gravity.worst
+        ]
         assert count(flat_tab, '#arm-rows .row.chosen') == 1
 
 
 def test_the_choice_of_a_joint_leads_there_too(flat_tab, pages):
     _, joints = of_arm7()
     flat_tab.show(pages['arm7'])
-    flat_tab.evaluate('(() => { const one = document.getElementById("joint-choice"); one.value ='
-                      ' "3"; one.dispatchEvent(new Event("change")); })()')
+    flat_tab.evaluate(
+        '(() => { const one = document.getElementById("joint-choice"); one.value ='
+        ' "3"; one.dispatchEvent(new Event("change")); })()'
+    )
     assert joints[3].name in texts(flat_tab, '#arm-caption')[0]
     assert flat_tab.evaluate('document.getElementById("plot-curve").data[0].name') == (
-        joints[3].name)
+        joints[3].name
+    )
 
 
 @pytest.mark.parametrize('source', [ARM7, *(random_urdf(seed) for seed in range(4))])
@@ -196,13 +226,17 @@ def test_poses_and_torques_of_the_page_are_those_of_the_model(flat_tab, pages, s
     flat_tab.show(pages['arm7'])
     model = RobotModel.from_urdf(source).with_gravity((0.3, -2.0, -9.5))
     robot, rng = json.dumps(scene(model)), np.random.default_rng(3)
-    children = {link.body: name for name, link in model.tree.links.items()
-                if link.body >= 0 and not (link.placement - np.eye(4)).any()}
+    children = {
+        link.body: name
+        for name, link in model.tree.links.items()
+        if link.body >= 0 and not (link.placement - np.eye(4)).any()
+    }
     for _ in range(3):
         q = random_state(rng, model)[0]
         found = flat_tab.evaluate(
             f'[kinematics.poses({robot}, {q.tolist()}),'
-            f' kinematics.gravityTorque({robot}, {q.tolist()})]')
+            f' kinematics.gravityTorque({robot}, {q.tolist()})]'
+        )
         np.testing.assert_allclose(found[1], model.gravity_torque(q), rtol=1e-9, atol=1e-9)
         for body, link in children.items():
             pose = np.reshape(found[0][body], (3, 4))
@@ -226,8 +260,10 @@ def test_a_table_is_sorted_up_and_down_with_what_is_missing_last(flat_tab, pages
     report, _ = of_arm7()
     flat_tab.show(pages['arm7'])
     column = texts(flat_tab, '#joints thead th .title').index('share of the limit')
-    known = {joint.name: math.nan if joint.gravity is None else joint.gravity.share
-             for joint in report.joints}
+    known = {
+        joint.name: math.nan if joint.gravity is None else joint.gravity.share
+        for joint in report.joints
+    }
     # From an order in which the joint without a share is not the last one.
     for _ in range(2):
         flat_tab.evaluate('document.querySelector("#joints thead button").click()')
@@ -247,9 +283,11 @@ def test_a_table_is_filtered_by_words(flat_tab, pages):
         '(() => { const field = document.querySelector("#links input[type=search]");'
         'field.value = "FINGER"; field.dispatchEvent(new Event("input"));'
         'return [...document.querySelectorAll("#links tbody tr:not([hidden]) th")]'
-        '.map((one) => one.textContent); })()')
-    assert seen == [link.name for link in arm7_report().links
-                    if 'finger' in f'{link.name} {link.carrier}']
+        '.map((one) => one.textContent); })()'
+    )
+    assert seen == [
+        link.name for link in arm7_report().links if 'finger' in f'{link.name} {link.carrier}'
+    ]
     assert count(flat_tab, '#links tbody tr') == len(arm7_report().links)
 
 
@@ -258,7 +296,8 @@ def test_findings_are_chosen_by_severity(flat_tab, pages):
     flat_tab.open(pages['refused'])
     flat_tab.evaluate('document.querySelector(".severities [data-severity=problem]").click()')
     assert count(flat_tab, '.finding:not([hidden])') == (
-        report.counts['problem'] + bool(report.refusals))
+        report.counts['problem'] + bool(report.refusals)
+    )
     assert flat_tab.complaints == []
 
 
@@ -290,8 +329,9 @@ def test_names_that_are_attacks_do_no_harm(flat_tab, pages, kind):
     for place in range(len(hostile_report().joint_names)):
         flat_tab.evaluate(f'document.querySelectorAll("#arm-rows button")[{place}].click()')
         for plot in ('plot-worst', 'plot-distribution', 'plot-mass'):
-            flat_tab.evaluate(f'Plotly.Fx.hover("{plot}", [{{curveNumber: 0, pointNumber: '
-                              f'{place}}}])')
+            flat_tab.evaluate(
+                f'Plotly.Fx.hover("{plot}", [{{curveNumber: 0, pointNumber: {place}}}])'
+            )
     flat_tab.settle()
     assert count(flat_tab, '.hoverlayer .hovertext') > 0
     assert flat_tab.evaluate('document.title') == f'{names["robot"]}: model report'

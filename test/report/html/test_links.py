@@ -16,7 +16,6 @@ def test_the_tables_of_links_and_bodies_say_what_the_report_says():
         assert row[2] == (', '.join(body.lumped) or '–')
 
 
-
 def test_a_link_that_cannot_exist_says_why():
     report = refused_report()
     row = next(row for row in reading(refused_report).tables['links'] if row[0] == 'upper')

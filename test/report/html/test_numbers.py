@@ -10,11 +10,29 @@ import pytest
 _RAISED = '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'
 
 
-@pytest.mark.parametrize('value, shown', [
-    (0.0, '0'), (-0.0, '0'), (1.0, '1'), (44.763, '44.76'), (-44.763, '−44.76'),
-    (1235.5, '1236'), (99990.0, '99990'), (123456.0, '1.235·10⁵'), (0.001, '0.001'),
-    (0.00012, '1.2·10⁻⁴'), (1e-6, '10⁻⁶'), (-1e-6, '−10⁻⁶'), (9.9999, '10'),
-    (0.00099999, '0.001'), (math.inf, '∞'), (-math.inf, '−∞'), (math.nan, '–'), (None, '–')])
+@pytest.mark.parametrize(
+    'value, shown',
+    [
+        (0.0, '0'),
+        (-0.0, '0'),
+        (1.0, '1'),
+        (44.763, '44.76'),
+        (-44.763, '−44.76'),
+        (1235.5, '1236'),
+        (99990.0, '99990'),
+        (123456.0, '1.235·10⁵'),
+        (0.001, '0.001'),
+        (0.00012, '1.2·10⁻⁴'),
+        (1e-6, '10⁻⁶'),
+        (-1e-6, '−10⁻⁶'),
+        (9.9999, '10'),
+        (0.00099999, '0.001'),
+        (math.inf, '∞'),
+        (-math.inf, '−∞'),
+        (math.nan, '–'),
+        (None, '–'),
+    ],
+)
 def test_a_number_is_written_as_people_do(value, shown):
     assert number(value) == shown
 
@@ -32,14 +50,26 @@ def read(shown):
 
 @given(st.floats(min_value=-1e300, max_value=1e300), st.integers(2, 6))
 def test_what_is_read_is_what_it_was_to_the_last_digit(value, digits):
-    assert read(number(value, digits)) == pytest.approx(value, rel=0.5001 * 10.0**(1 - digits),
-                                                        abs=1e-305)
+    assert read(number(value, digits)) == pytest.approx(
+        value, rel=0.5001 * 10.0 ** (1 - digits), abs=1e-305
+    )
 
 
-@pytest.mark.parametrize('share, shown', [
-    (0.0, '0 %'), (0.4973, '50 %'), (0.0231, '2.3 %'), (1.0, '100 %'), (0.996, '99.6 %'),
-    (1.004, '100.4 %'), (0.99999, '100 %'), (3.32, '332 %'), (math.nan, '–'),
-    (math.inf, '∞ %')])
+@pytest.mark.parametrize(
+    'share, shown',
+    [
+        (0.0, '0 %'),
+        (0.4973, '50 %'),
+        (0.0231, '2.3 %'),
+        (1.0, '100 %'),
+        (0.996, '99.6 %'),
+        (1.004, '100.4 %'),
+        (0.99999, '100 %'),
+        (3.32, '332 %'),
+        (math.nan, '–'),
+        (math.inf, '∞ %'),
+    ],
+)
 def test_a_share_near_the_limit_says_on_which_side_it_is(share, shown):
     assert percent(share).replace('\u00a0', ' ') == shown
 

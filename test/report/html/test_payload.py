@@ -7,11 +7,12 @@ from support.report_pages import arm7_report, unlimited_report
 
 def test_the_payload_is_that_of_the_report():
     payload, words = arm7_report().payload, reading(arm7_report).words
-    for said in (f'carried by {payload.link}',
-                 f'at every pose {quantity(payload.everywhere, "kg", 3)} , limited by '
-                 f'{payload.limiting_joint}',
-                 f'at the best pose {quantity(payload.best, "kg", 3)} , limited by '
-                 f'{payload.best_joint}'):
+    for said in (
+        f'carried by {payload.link}',
+        f'at every pose {quantity(payload.everywhere, "kg", 3)} , limited by '
+        f'{payload.limiting_joint}',
+        f'at the best pose {quantity(payload.best, "kg", 3)} , limited by {payload.best_joint}',
+    ):
         # A name may be broken into lines after an underscore.
         assert plain(said).replace('_ ', '_') in words.replace('_ ', '_')
 

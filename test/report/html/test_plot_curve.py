@@ -14,14 +14,13 @@ def test_curve_and_histogram_belong_to_their_joint():
         curve, worst = curve_figure(joint, joint.gravity.position[place])['data']
         assert curve['y'] == list(joint.gravity.curve_torques)
         scale = 1.0 if joint.kind == 'prismatic' else 180.0 / math.pi
-        np.testing.assert_allclose(curve['x'],
-                                   scale * np.array(joint.gravity.curve_positions))
+        np.testing.assert_allclose(curve['x'], scale * np.array(joint.gravity.curve_positions))
         assert worst['y'] == [joint.gravity.worst]
         assert worst['x'] == [scale * joint.gravity.position[place]]
         bars = histogram_figure(joint)['data'][0]
         np.testing.assert_allclose(
-            bars['y'], 100.0 * np.array(joint.gravity.counts) / sum(joint.gravity.counts))
-
+            bars['y'], 100.0 * np.array(joint.gravity.counts) / sum(joint.gravity.counts)
+        )
 
 
 def test_a_limit_is_drawn_where_it_is_near_and_not_where_it_would_flatten_the_curve():

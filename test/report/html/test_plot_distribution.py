@@ -10,11 +10,15 @@ def test_the_boxes_are_quantiles_of_the_report():
     shares, torques, _, _ = distribution_figure(loaded_joints(report))['data']
     for place, joint in enumerate(loaded_joints(report)):
         known = dict(zip(joint.gravity.levels, joint.gravity.quantiles, strict=True))
-        for key, level in (('lowerfence', 0.05), ('q1', 0.25), ('median', 0.5), ('q3', 0.75),
-                           ('upperfence', 0.95)):
+        for key, level in (
+            ('lowerfence', 0.05),
+            ('q1', 0.25),
+            ('median', 0.5),
+            ('q3', 0.75),
+            ('upperfence', 0.95),
+        ):
             assert torques[key][place] == known[level]
             assert shares[key][place] == pytest.approx(100.0 * known[level] / joint.effort)
-
 
 
 def test_without_limits_only_torques_are_shown():

@@ -16,7 +16,6 @@ def test_the_bars_are_the_worst_torques_and_their_shares():
     assert limits['x'] == [joint.effort for joint in joints]
 
 
-
 def test_a_joint_over_its_limit_has_another_colour():
     report = weak_report()
     share = worst_figure(loaded_joints(report))['data'][0]
@@ -24,15 +23,17 @@ def test_a_joint_over_its_limit_has_another_colour():
     assert any(over) and not all(over)
     assert [color == {'css': 'problem'} for color in share['marker']['color']] == over
     assert [tone(value) for value in (0.5, 0.9, 1.1, math.nan)] == [
-        'accent', 'warning', 'problem', 'faint']
-
+        'accent',
+        'warning',
+        'problem',
+        'faint',
+    ]
 
 
 def test_without_limits_only_torques_are_shown():
     figure = worst_figure(loaded_joints(unlimited_report()))
     assert [mode['label'] for mode in figure['modes']] == ['torque']
     assert [trace['visible'] for trace in figure['data']] == figure['modes'][0]['visible']
-
 
 
 def test_a_limit_far_beyond_the_torques_does_not_make_them_invisible():

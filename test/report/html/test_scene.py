@@ -29,7 +29,7 @@ def test_without_mass_there_is_no_shape():
 
 
 def test_a_ball_weighs_what_its_body_weighs():
-    volume = 4.0 / 3.0 * np.pi * ball_radius(2.5)**3
+    volume = 4.0 / 3.0 * np.pi * ball_radius(2.5) ** 3
     assert volume * BALL_DENSITY == pytest.approx(2.5)
 
 
@@ -65,12 +65,14 @@ def test_a_stick_goes_to_every_body_and_from_the_base_to_the_first():
 
 
 def test_a_stick_goes_on_to_the_farthest_link_of_the_last_body():
-    text = ('<robot name="r"><link name="base"/><link name="rod"/><link name="near"/>'
-            '<link name="tool"/><joint name="j" type="continuous"><parent link="base"/>'
-            '<child link="rod"/><axis xyz="0 1 0"/></joint>'
-            '<joint name="a" type="fixed"><parent link="rod"/><child link="near"/>'
-            '<origin xyz="0 0 0.1"/></joint>'
-            '<joint name="b" type="fixed"><parent link="near"/><child link="tool"/>'
-            '<origin xyz="0 0 0.3"/></joint></robot>')
+    text = (
+        '<robot name="r"><link name="base"/><link name="rod"/><link name="near"/>'
+        '<link name="tool"/><joint name="j" type="continuous"><parent link="base"/>'
+        '<child link="rod"/><axis xyz="0 1 0"/></joint>'
+        '<joint name="a" type="fixed"><parent link="rod"/><child link="near"/>'
+        '<origin xyz="0 0 0.1"/></joint>'
+        '<joint name="b" type="fixed"><parent link="near"/><child link="tool"/>'
+        '<origin xyz="0 0 0.3"/></joint></robot>'
+    )
     sticks = scene(RobotModel.from_urdf(text))['sticks']
     assert sticks[-1] == [[0, [0.0, 0.0, 0.0]], [0, [0.0, 0.0, 0.4]]]

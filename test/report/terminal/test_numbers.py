@@ -7,9 +7,19 @@ from dynamics_node.report.terminal.numbers import fixed, short, shorts, vector
 
 def test_three_digits():
     assert [short(value) for value in (0.0, 12.345, 0.00123, 1e-7, 1e6, -3.0)] == [
-        '0', '12.3', '0.00123', '1.0e-07', '1.0e+06', '-3']
+        '0',
+        '12.3',
+        '0.00123',
+        '1.0e-07',
+        '1.0e+06',
+        '-3',
+    ]
     assert [short(value) for value in (math.nan, None, math.inf, -math.inf)] == [
-        '-', '-', '∞', '-∞']
+        '-',
+        '-',
+        '∞',
+        '-∞',
+    ]
 
 
 def test_rows_and_rounded_zeros():

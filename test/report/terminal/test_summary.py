@@ -13,9 +13,16 @@ from support.robots import ARM7, public_robot
 def printed(report, width=80, colours=False):
     """Return what is printed."""
     out = io.StringIO()
-    print_report(report, Console(file=out, width=width, highlight=False,
-                                 force_terminal=colours,
-                                 color_system='standard' if colours else None))
+    print_report(
+        report,
+        Console(
+            file=out,
+            width=width,
+            highlight=False,
+            force_terminal=colours,
+            color_system='standard' if colours else None,
+        ),
+    )
     return out.getvalue()
 
 
@@ -43,8 +50,11 @@ def test_at_80_columns_no_row_of_an_arm_is_broken(arm7):
 
 def test_the_numbers_are_those_of_the_report(arm7):
     text = printed(arm7, 120)
-    row = next(line for line in text.split('Largest gravity')[1].splitlines()
-               if line.startswith('shoulder_pitch'))
+    row = next(
+        line
+        for line in text.split('Largest gravity')[1].splitlines()
+        if line.startswith('shoulder_pitch')
+    )
     load = arm7.joints[1].gravity
     assert f'{load.worst:.3g}' in row and f'{100.0 * load.share:.0f} %' in row
     assert f'{load.payload_left:.3g}' in row
@@ -52,8 +62,9 @@ def test_the_numbers_are_those_of_the_report(arm7):
 
 
 def test_findings_stand_last_with_the_worst_next_to_the_verdict():
-    report = make_report(changed(changed(arm(), 'link2', mass=0.007), 'link3',
-                                 tensor={'izz': 9.0}), samples=200)
+    report = make_report(
+        changed(changed(arm(), 'link2', mass=0.007), 'link3', tensor={'izz': 9.0}), samples=200
+    )
     text = printed(report)
     assert text.index('Largest gravity') < text.index('Findings') < text.index('warning [grams]')
     assert text.index('warning [grams]') < text.index('problem [triangle')
@@ -70,14 +81,26 @@ def test_colours_only_where_they_are_wanted(arm7, monkeypatch):
 
 
 def test_names_are_no_markup():
-    text = printed(make_report(arm().replace('link3', '[bold red]x[/]').replace(
-        'joint3', '[link=http://a]j'), samples=20), 120)
+    text = printed(
+        make_report(
+            arm().replace('link3', '[bold red]x[/]').replace('joint3', '[link=http://a]j'),
+            samples=20,
+        ),
+        120,
+    )
     assert '[bold red]x[/]' in text and '[link=http://a]j' in text
 
 
-@pytest.mark.parametrize('text', [
-    changed(arm(), 'link2', mass=-1.0), arm().replace('revolute', 'planar', 1),
-    '<robot name="a"/>', '<robot name="a"><link name="b"/></robot>', arm(effort='inf')])
+@pytest.mark.parametrize(
+    'text',
+    [
+        changed(arm(), 'link2', mass=-1.0),
+        arm().replace('revolute', 'planar', 1),
+        '<robot name="a"/>',
+        '<robot name="a"><link name="b"/></robot>',
+        arm(effort='inf'),
+    ],
+)
 def test_every_robot_can_be_printed(text):
     report = make_report(text, samples=20)
     said = printed(report)
@@ -87,8 +110,7 @@ def test_every_robot_can_be_printed(text):
 
 
 def test_a_gripper_that_weighs_nothing_is_shown():
-    text = printed(make_report(public_robot('ur_description/urdf/ur5_gripper.urdf'),
-                               samples=50))
+    text = printed(make_report(public_robot('ur_description/urdf/ur5_gripper.urdf'), samples=50))
     row = next(line for line in text.splitlines() if line.startswith('tool0'))
     assert 'weighs nothing' in row
 

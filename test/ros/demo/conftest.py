@@ -28,15 +28,23 @@ def environment():
     """Return the environment of a child process: a domain of its own, this very package."""
     package = str(Path(dynamics_node.__file__).resolve().parents[1])
     path = os.pathsep.join([package, *filter(None, [os.environ.get('PYTHONPATH')])])
-    return {**os.environ, 'PYTHONPATH': path, 'ROS_DOMAIN_ID': str(claim()),
-            'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+    return {
+        **os.environ,
+        'PYTHONPATH': path,
+        'ROS_DOMAIN_ID': str(claim()),
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+    }
 
 
 def run_robot(env, arguments):
     """Start the simulated robot with a command line; return the process."""
     return subprocess.Popen(
-        [sys.executable, '-m', 'dynamics_node.ros.demo.simulated_robot', *arguments], env=env,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        [sys.executable, '-m', 'dynamics_node.ros.demo.simulated_robot', *arguments],
+        env=env,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
 
 
 class Robot:
@@ -66,9 +74,12 @@ class Robot:
         self.node.create_subscription(JointState, 'joint_states', self.states.append, 100)
         self.node.create_subscription(String, 'robot_description', self._on_description, latched)
         self.commands = self.node.create_publisher(
-            Float64MultiArray, 'forward_effort_controller/commands', 1)
-        self.services = {name: self.node.create_client(kind, f'simulated_robot/{name}')
-                         for name, kind in SERVICES.items()}
+            Float64MultiArray, 'forward_effort_controller/commands', 1
+        )
+        self.services = {
+            name: self.node.create_client(kind, f'simulated_robot/{name}')
+            for name, kind in SERVICES.items()
+        }
         self.wait_for(lambda: self.states and self.commands.get_subscription_count())
         self.wait_for(lambda: all(s.service_is_ready() for s in self.services.values()))
 
@@ -175,6 +186,7 @@ def start_robot():
     def start(*parameters):
         robots.append(Robot(*parameters))
         return robots[-1]
+
     yield start
     for robot in robots:
         if robot.process.poll() is None:
@@ -184,10 +196,15 @@ def start_robot():
 @pytest.fixture
 def refusals():
     """Return a function: command lines of robots that must not start, to the line each prints."""
+
     def run(*command_lines):
-        env = {name: value for name, value in environment().items()
-               if name not in ('DISPLAY', 'WAYLAND_DISPLAY')}
+        env = {
+            name: value
+            for name, value in environment().items()
+            if name not in ('DISPLAY', 'WAYLAND_DISPLAY')
+        }
         return [only_line(process) for process in [run_robot(env, line) for line in command_lines]]
+
     return run
 
 

@@ -31,8 +31,10 @@ def error(offset, clocks):
 
 def test_the_offset_does_not_jitter_with_the_readings():
     """However long they take."""
-    clocks = Clocks([3 * MILLISECOND, 0, MILLISECOND, 7 * MILLISECOND, 100] + 50 * [
-        0, 4 * MILLISECOND, 90 * MILLISECOND])
+    clocks = Clocks(
+        [3 * MILLISECOND, 0, MILLISECOND, 7 * MILLISECOND, 100]
+        + 50 * [0, 4 * MILLISECOND, 90 * MILLISECOND]
+    )
     offset = ClockOffset(clocks.clock, clocks.steady)
     found = {offset.now() for _ in range(150)}
     assert len(found) == 1

@@ -12,12 +12,19 @@ import pytest
 @pytest.fixture
 def demo(child_environment, tmp_path):
     """Return a function that runs the demo to its end: exit code and output."""
+
     def run(*arguments):
         done = subprocess.run(
-            [sys.executable, '-m', 'dynamics_node.ros.demo.demo', *arguments], cwd=tmp_path,
-            env=child_environment, timeout=280, text=True, stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT)
+            [sys.executable, '-m', 'dynamics_node.ros.demo.demo', *arguments],
+            cwd=tmp_path,
+            env=child_environment,
+            timeout=280,
+            text=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
         return done.returncode, done.stdout
+
     return run
 
 
@@ -30,12 +37,16 @@ def test_the_demo_succeeds_and_draws_its_figure(demo, tmp_path):
         assert figure.size == (1440, 1200)
 
 
-@pytest.mark.parametrize('text, sentence', [
-    (None, 'cannot read the robot description'),
-    ('<sdf/>', 'expected a URDF with <robot> at its top, got <sdf>'),
-])
-def test_a_robot_that_cannot_be_run_ends_it_with_a_sentence(capsys, tmp_path, monkeypatch, text,
-                                                            sentence):
+@pytest.mark.parametrize(
+    'text, sentence',
+    [
+        (None, 'cannot read the robot description'),
+        ('<sdf/>', 'expected a URDF with <robot> at its top, got <sdf>'),
+    ],
+)
+def test_a_robot_that_cannot_be_run_ends_it_with_a_sentence(
+    capsys, tmp_path, monkeypatch, text, sentence
+):
     """Before any process is started, exit code 1."""
     monkeypatch.setenv('ROS_DOMAIN_ID', '17')
     path = Path(tmp_path) / 'robot.urdf'

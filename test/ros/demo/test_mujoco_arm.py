@@ -32,6 +32,7 @@ def oracle(arm7_text):
         matrix = (matrix + np.triu(matrix, 1).T)[np.ix_(columns, columns)]
         torque = pinocchio.computeGeneralizedGravity(model, data, full)[columns]
         return arm.mimic_matrix.T @ matrix @ arm.mimic_matrix, arm.mimic_matrix.T @ torque
+
     return both
 
 
@@ -176,8 +177,10 @@ def test_absurd_efforts_end_on_the_brakes(arm, tmp_path, monkeypatch):
 
 def test_mujoco_s_refusal_becomes_one_sentence():
     """With the reason."""
-    ghost = ('<robot name="g"><link name="a"/><link name="b"/><joint name="j" type="continuous">'
-             '<parent link="a"/><child link="b"/></joint></robot>')
+    ghost = (
+        '<robot name="g"><link name="a"/><link name="b"/><joint name="j" type="continuous">'
+        '<parent link="a"/><child link="b"/></joint></robot>'
+    )
     with pytest.raises(RobotRefusedError, match=r'cannot simulate this robot: .*mass') as caught:
         MujocoArm(ghost)
     assert '\n' not in str(caught.value)

@@ -10,7 +10,8 @@ def test_as_many_steps_as_time_has_passed():
     assert pacer.steps_due(10.002) == 4
     assert pacer.steps_due(10.002) == 0
     assert sum(pacer.steps_due(10.002 + 0.0013 * k) for k in range(1, 1001)) == pytest.approx(
-        2600, abs=1)
+        2600, abs=1
+    )
 
 
 def test_a_long_pause_is_not_caught_up():

@@ -50,13 +50,16 @@ def test_a_good_run_has_no_failures(recording):
     assert outcome(recording).failures() == []
 
 
-@pytest.mark.parametrize('change, sentence', [
-    ({'fall': 19.0}, 'it fell 19.0 degrees; expected more than 20'),
-    ({'drift': 1.5}, 'held, it drifted 1.50 degrees; expected less than 1'),
-    ({'drift': float('nan')}, 'held, it drifted nan degrees; expected less than 1'),
-    ({'after': 2.0}, 'held after the push, it drifted 2.00 degrees; expected less than 1'),
-    ({'pushed': 1.0}, 'the push moved it 1.0 degrees; expected more than 3'),
-])
+@pytest.mark.parametrize(
+    'change, sentence',
+    [
+        ({'fall': 19.0}, 'it fell 19.0 degrees; expected more than 20'),
+        ({'drift': 1.5}, 'held, it drifted 1.50 degrees; expected less than 1'),
+        ({'drift': float('nan')}, 'held, it drifted nan degrees; expected less than 1'),
+        ({'after': 2.0}, 'held after the push, it drifted 2.00 degrees; expected less than 1'),
+        ({'pushed': 1.0}, 'the push moved it 1.0 degrees; expected more than 3'),
+    ],
+)
 def test_every_figure_can_fail_the_demo(recording, change, sentence):
     """With one sentence that has both numbers."""
     failures = outcome(recording, **change).failures()

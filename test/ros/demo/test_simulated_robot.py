@@ -6,8 +6,16 @@ from dynamics_node.ros.demo.mujoco_arm import MujocoArm
 import numpy as np
 import pytest
 
-DRIVEN = ['shoulder_yaw', 'shoulder_pitch', 'upper_arm_roll', 'elbow_pitch', 'forearm_roll',
-          'wrist_pitch', 'wrist_roll', 'left_finger_slide']
+DRIVEN = [
+    'shoulder_yaw',
+    'shoulder_pitch',
+    'upper_arm_roll',
+    'elbow_pitch',
+    'forearm_roll',
+    'wrist_pitch',
+    'wrist_roll',
+    'left_finger_slide',
+]
 NO_BODY = """<robot name="ghost"><link name="a"/><link name="b"/>
 <joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>"""
 
@@ -69,8 +77,9 @@ def test_one_command_is_held_for_ever(robot, arm7_text):
     robot.call('set_brakes', data=False)
     robot.spin_for(0.7)
     assert largest_way(before, robot.positions()) < 0.01
-    assert robot.efforts() == pytest.approx({**dict(zip(DRIVEN, torque)),
-                                             'right_finger_slide': 0.0})
+    assert robot.efforts() == pytest.approx(
+        {**dict(zip(DRIVEN, torque)), 'right_finger_slide': 0.0}
+    )
 
 
 @pytest.mark.parametrize('wrong', [[], [1.0] * 7, [1.0] * 9, [math.nan] * 8])
@@ -81,7 +90,8 @@ def test_a_wrong_command_is_ignored(robot, wrong):
     robot.wait_for(lambda: robot.efforts()['left_finger_slide'] == good[-1])
     robot.command(wrong)
     assert {tuple(state.effort) for state in robot.spin_for(0.1)} == {
-        tuple(robot.states[-1].effort)}
+        tuple(robot.states[-1].effort)
+    }
     assert robot.efforts()['left_finger_slide'] == good[-1]
 
 
@@ -145,8 +155,10 @@ def test_what_cannot_be_run_is_refused_in_one_sentence(refusals, tmp_path):
     path = tmp_path / 'ghost.urdf'
     path.write_text(NO_BODY)
     ghost, blind, lost = refusals(
-        ['--ros-args', '-p', f'robot_description_file:={path}'], ['--view'],
-        ['--ros-args', '-p', 'start_pose:=[1.0]'])
+        ['--ros-args', '-p', f'robot_description_file:={path}'],
+        ['--view'],
+        ['--ros-args', '-p', 'start_pose:=[1.0]'],
+    )
     assert ghost.startswith('simulated_robot: MuJoCo cannot simulate this robot: ')
     assert blind.startswith('simulated_robot: the viewer needs a display')
     assert lost.startswith('simulated_robot: start_pose: expected 8 finite numbers for shoulder_')
