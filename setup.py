@@ -47,10 +47,10 @@ setup(
         'console_scripts': [
             'dynamics_node = dynamics_node.ros.main:main',
             'effort_guard = dynamics_node.ros.effort_guard.main:main',
-            'simulated_robot = dynamics_node.ros.demo.simulated_robot:main',
-            'demo = dynamics_node.ros.demo.demo:main',
+            'simulated_robot = dynamics_node.demo.simulated_robot:main',
+            'demo = dynamics_node.demo.__main__:main',
             'report = dynamics_node.report.__main__:main',
-            'markers = dynamics_node.ros.markers.__main__:main',
+            'markers = dynamics_node.visualization.markers.__main__:main',
         ]
     },
 )

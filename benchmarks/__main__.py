@@ -4,12 +4,12 @@ import argparse
 from pathlib import Path
 import sys
 
-from . import rivals
-from .growth import SIZES
+from . import libraries
 from .plot import draw
 from .report import render
 from .robots import ROOT
 from .run import run
+from .scaling import SIZES
 
 PICTURE = 'benchmarks.png'
 
@@ -55,8 +55,8 @@ def main(arguments=None):
     parser.add_argument(
         '--rivals',
         nargs='*',
-        choices=rivals.FILES,
-        default=list(rivals.FILES),
+        choices=libraries.FILES,
+        default=list(libraries.FILES),
         help='libraries to measure beside this one (default: all)',
     )
     parser.add_argument(

@@ -7,8 +7,8 @@ matplotlib.use('Agg')
 from matplotlib import pyplot
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from .growth import SHAPES
-from .numbers import digits
+from .formatting import digits
+from .scaling import SHAPES
 from .timing import spread_of
 
 OURS = 'dynamics_node'

@@ -3,9 +3,9 @@
 from . import tables
 from .agreement import TOLERANCE
 from .batch import LOOP_PART
-from .growth import FITTED
-from .numbers import digits
+from .formatting import digits
 from .quantities import QUANTITIES
+from .scaling import FITTED
 from .single_call import PASSES, SLOW_ROUNDS
 from .timing import SAMPLE_SECONDS, SLOW_CALL_SECONDS
 

@@ -3,18 +3,18 @@
 from dataclasses import replace
 from time import perf_counter
 
-from . import batch, growth, machine, memory, rivals, sections, single_call
-from .beside import KDL_PYTHON, measure_beside
+from . import batch, external_sections, host, libraries, memory, scaling, single_call
+from .libraries import dynamics_node
+from .other_interpreter import KDL_PYTHON, measure_beside
 from .results import Results
-from .rivals import ours
 from .robots import arms
 
 
 def run(
     rounds,
     batch_count,
-    sizes=growth.SIZES,
-    names=rivals.FILES,
+    sizes=scaling.SIZES,
+    names=libraries.FILES,
     kdl_python=KDL_PYTHON,
     with_sections=True,
     say=print,
@@ -45,14 +45,14 @@ def run(
 
     """
     begin = perf_counter()
-    results = Results(machine.describe(), rounds=rounds, batch_count=batch_count)
-    loaded, missing = rivals.load(names)
-    for module in (ours, *loaded.values()):
-        version = getattr(module, 'VERSION', None) or rivals.version_of(module.PACKAGE)
+    results = Results(host.describe(), rounds=rounds, batch_count=batch_count)
+    loaded, missing = libraries.load(names)
+    for module in (dynamics_node, *loaded.values()):
+        version = getattr(module, 'VERSION', None) or libraries.version_of(module.PACKAGE)
         results.libraries[module.NAME] = version or 'version unknown'
         results.notes[module.NAME] = module.NOTE
     if 'frax' in loaded:
-        results.facts['JAX'] = rivals.version_of('jax') or 'version unknown'
+        results.facts['JAX'] = libraries.version_of('jax') or 'version unknown'
     robots = arms()
     results.joints = {robot.name: robot.n for robot in robots}
     fewer = max(3, rounds // 3)
@@ -63,10 +63,10 @@ def run(
     results.batch, refused = batch.measure(robots[-1], batch_count, loaded, fewer, say)
     results.refused += refused
     results.memory = memory.peak_besides_result(batch_count)
-    results.growth, refused = growth.measure(loaded, rounds, sizes, say)
+    results.growth, refused = scaling.measure(loaded, rounds, sizes, say)
     results.refused += refused
     if with_sections:
-        results.sections = sections.measure(say)
+        results.sections = external_sections.measure(say)
     results.seconds = perf_counter() - begin
     return results
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from .agreement import check, DifferentResultError
+from .libraries import dynamics_node
 from .quantities import QUANTITIES
-from .rivals import ours
 from .timing import collector_off, interleaved
 
 # Every quantity gets its turn in each of so many passes over all of them, so that a slow minute
@@ -87,7 +87,7 @@ def _parts(rounds):
 
 
 def _offered(robot, loaded, refused):
-    calls = {ours.NAME: ours.calls(robot)}
+    calls = {dynamics_node.NAME: dynamics_node.calls(robot)}
     for rival in loaded.values():
         try:
             calls[rival.NAME] = rival.calls(robot)
@@ -117,4 +117,4 @@ class _Group:
         for name, seconds in samples.items():
             self.rows[name].seconds.extend(seconds)
             # A slow library takes part in the first rounds: ours of the same ones.
-            self.rows[name].ours.extend(samples[ours.NAME][: len(seconds)])
+            self.rows[name].ours.extend(samples[dynamics_node.NAME][: len(seconds)])

@@ -1,8 +1,8 @@
 """The tables of the report, rendered from results."""
 
-from .growth import exponent, SHAPES
-from .numbers import digits, ratio_text, time_text
+from .formatting import digits, ratio_text, time_text
 from .quantities import QUANTITIES
+from .scaling import exponent, SHAPES
 from .timing import ratio_of, spread_of
 
 

@@ -12,7 +12,7 @@ alone, round by round.
 
 import numpy as np
 
-from .numbers import digits, time_text
+from .formatting import digits, time_text
 from .robots import arm7
 from .timing import interleaved, ratio_of, spread_of
 
@@ -64,7 +64,7 @@ def by_pinocchio(robot, time, q):
     import pinocchio
     from scipy.interpolate import CubicSpline
 
-    from .rivals.pinocchio import model_of
+    from .libraries.pinocchio import model_of
 
     model = model_of(robot)
     data, rnea = model.createData(), pinocchio.rnea
@@ -137,7 +137,7 @@ def _row(name, count, seconds, ours):
 
 
 if __name__ == '__main__':
-    from .sections import Section
+    from .external_sections import Section
     from .tables import section_table
 
     print(section_table(Section('', '', measure())))

@@ -9,7 +9,7 @@ bash scripts/setup.sh test
 source scripts/env.sh
 # shellcheck source=scripts/isolate.sh
 source scripts/isolate.sh
-export PYTHONPATH=$PWD/test${PYTHONPATH:+:$PYTHONPATH}
+export PYTHONPATH=$PWD/test:$PWD/tools${PYTHONPATH:+:$PYTHONPATH}
 
 code=0
 python -m fuzz "$@" || code=$?

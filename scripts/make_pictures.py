@@ -23,7 +23,7 @@ ARM7 = ROOT / 'config' / 'robots' / 'arm7.urdf'
 
 def floating():
     """Run the demo and draw what happened."""
-    from dynamics_node.ros.demo.demo import isolate, perform
+    from dynamics_node.demo.__main__ import isolate, perform
     from pictures import floating, rendering
     from rich.console import Console
 

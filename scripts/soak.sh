@@ -7,5 +7,5 @@ bash scripts/setup.sh demo
 source scripts/env.sh
 # shellcheck source=scripts/isolate.sh
 source scripts/isolate.sh
-export PYTHONPATH=$PWD/test${PYTHONPATH:+:$PYTHONPATH}
+export PYTHONPATH=$PWD/test:$PWD/tools${PYTHONPATH:+:$PYTHONPATH}
 exec python -m soak "$@"

@@ -91,7 +91,7 @@ def render(name):
 # Simulated only: the demo held this arm in MuJoCo with these parameters, no real one was tried.
 {warning}
 #
-#     python -m dynamics_node.ros.demo.demo --robot {path} --params-file {name}.yaml
+#     python -m dynamics_node.demo.__main__ --robot {path} --params-file {name}.yaml
 
 /**/dynamics_node:
   ros__parameters:

@@ -1,10 +1,11 @@
 """For all tests: what hypothesis draws, what they have for themselves, and who runs what."""
 
+import contextlib
 import os
 
 from hypothesis import HealthCheck, settings
 import pytest
-from support.domains import claim
+from support.ros_domain import claim
 
 # The same examples in every run: CI=1 make test. More of them, or fewer:
 # HYPOTHESIS_EXAMPLES=5000 make test ARGS=test/dynamics
@@ -41,6 +42,66 @@ def own_domain():
         if 'ROS_AUTOMATIC_DISCOVERY_RANGE' not in os.environ:
             patch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
         yield
+
+
+# Over DDS: everything started here is also ended here.
+@pytest.fixture
+def client():
+    """Return a client of the node."""
+    from support.processes import Client
+
+    client = Client()
+    yield client
+    client.close()
+
+
+@pytest.fixture
+def start():
+    """Return a function that starts the node with parameters."""
+    from support.processes import NodeProcess
+
+    with _starting(NodeProcess) as start:
+        yield start
+
+
+@pytest.fixture
+def start_markers():
+    """Return a function that starts the markers program with parameters."""
+    from support.processes import MarkersProcess
+
+    with _starting(MarkersProcess) as start:
+        yield start
+
+
+@contextlib.contextmanager
+def _starting(kind):
+    with contextlib.ExitStack() as stack:  # which ends all, also when the end of one goes wrong
+
+        def start(*remappings, **parameters):
+            process = kind(*remappings, **parameters)
+            stack.callback(process.close)
+            return process
+
+        yield start
+
+
+@pytest.fixture(scope='module')
+def shared():
+    """Return a client of a node with arm7, for all tests of a file that only ask."""
+    from support.processes import Client, NodeProcess
+    from support.robots import ARM7
+    from support.ros_domain import claim
+
+    with contextlib.ExitStack() as stack:
+        # In a domain of its own: other tests here start nodes of the same name.
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv('ROS_DOMAIN_ID', str(claim()))
+            # A busy machine does not trip it while states come.
+            node = NodeProcess(robot_description_file=ARM7, state_timeout=1.0)
+            stack.callback(node.close)
+            client = Client()
+        stack.callback(client.close)
+        yield client
 
 
 # Both only with pytest-xdist, as scripts/test.sh starts it.

@@ -23,19 +23,19 @@ TITLES = [
 SIZES = (2, 4, 8)
 MODULES = (
     'agreement',
-    'generated',
-    'growth',
-    'numbers',
+    'generated_robots',
+    'scaling',
+    'formatting',
     'plot',
     'report',
-    'rivals',
+    'libraries',
     'robots',
     'run',
-    'sections',
+    'external_sections',
     'single_call',
     'tables',
     'timing',
-    'rivals.pinocchio',
+    'libraries.pinocchio',
 )
 
 
@@ -189,8 +189,8 @@ def test_not_a_number_is_refused(bench):
 def test_a_library_that_is_not_installed_is_named_with_the_reason(bench, monkeypatch):
     monkeypatch.setitem(sys.modules, 'pydrake.multibody.parsing', None)
     monkeypatch.setitem(sys.modules, 'pydrake', None)
-    monkeypatch.delitem(sys.modules, 'benchmarks.rivals.drake', raising=False)
-    loaded, missing = bench.rivals.load(('drake',))
+    monkeypatch.delitem(sys.modules, 'benchmarks.libraries.drake', raising=False)
+    loaded, missing = bench.libraries.load(('drake',))
     assert loaded == {} and 'pydrake' in missing['drake']
 
 
@@ -203,7 +203,7 @@ def test_other_files_measure_their_sections(bench, monkeypatch, tmp_path):
     package = sys.modules['benchmarks']
     monkeypatch.setattr(package, '__path__', [*package.__path__, str(tmp_path)])
     monkeypatch.setattr(
-        bench.sections,
+        bench.external_sections,
         'PLACES',
         {
             'good': ('Good', 'good_section'),
@@ -211,7 +211,7 @@ def test_other_files_measure_their_sections(bench, monkeypatch, tmp_path):
             'none': ('None', 'no_section'),
         },
     )
-    sections = bench.sections.measure(say=lambda text: None)
+    sections = bench.external_sections.measure(say=lambda text: None)
     assert sections['good'].text == 'How it was measured.'
     assert bench.tables.section_table(sections['good']).splitlines() == [
         '| what | ms |',
@@ -226,14 +226,16 @@ def test_other_files_measure_their_sections(bench, monkeypatch, tmp_path):
 
 def test_a_section_that_is_measured_alone_takes_the_place_of_the_old_one(bench):
     report = '# Benchmarks\n\n## The node\n\nold\n\n| a |\n|---|\n| 1 |\n\n## How\n\ntext\n'
-    section = bench.sections.Section('The node', r'new \1', [{'what': 'p50', 'ratio': '1.1'}])
-    new = bench.sections.put(report, section, {'CPU': 'a processor', 'Python': '3.12'})
+    section = bench.external_sections.Section(
+        'The node', r'new \1', [{'what': 'p50', 'ratio': '1.1'}]
+    )
+    new = bench.external_sections.put(report, section, {'CPU': 'a processor', 'Python': '3.12'})
     assert new.startswith('# Benchmarks\n\n## The node\n\nnew \\1\n\n')
     assert new.endswith('\n\n## How\n\ntext\n')
     assert 'CPU a processor; Python 3.12.' in new
     assert '| p50 | 1.1 |' in new and 'old' not in new
     with pytest.raises(ValueError, match='expected a section "Other"'):
-        bench.sections.put(report, bench.sections.Section('Other', ''), {})
+        bench.external_sections.put(report, bench.external_sections.Section('Other', ''), {})
 
 
 def test_ratios_are_those_of_the_same_round(bench):
@@ -284,19 +286,19 @@ def test_the_collector_is_off_while_the_clock_runs(bench):
 def test_the_exponent_is_the_slope_of_a_power_law(bench):
     # Rounds of different speed, the last one disturbed: the median is that of the power law.
     rows = [
-        bench.growth.GrowthRow(
+        bench.scaling.GrowthRow(
             'chain', joints, 'x', [1e-6 * joints**1.5, 3e-6 * joints**1.5, 1e-6 * joints**2.5], []
         )
         for joints in (2, 4, 8, 16)
     ]
-    spread = bench.growth.exponent(rows, 'chain', 'x')
+    spread = bench.scaling.exponent(rows, 'chain', 'x')
     assert (spread.median, spread.low, spread.high) == pytest.approx((1.5, 1.5, 2.0))
-    assert bench.growth.exponent(rows[:1], 'chain', 'x') is None
+    assert bench.scaling.exponent(rows[:1], 'chain', 'x') is None
 
 
 @pytest.mark.parametrize('shape, depth', [('chain', 31), ('binary_tree', 5)])
 def test_generated_robots_have_the_shape_that_they_are_named_after(bench, shape, depth):
-    robot = bench.robots.make_robot(shape, getattr(bench.generated, shape)(31))
+    robot = bench.robots.make_robot(shape, getattr(bench.generated_robots, shape)(31))
     parent = robot.model.tree.parent
     levels = np.zeros(31, dtype=int)
     for k in range(31):
@@ -318,4 +320,4 @@ def test_generated_robots_have_the_shape_that_they_are_named_after(bench, shape,
     ],
 )
 def test_times_have_three_digits_and_a_unit(bench, seconds, text):
-    assert bench.numbers.time_text(seconds) == text
+    assert bench.formatting.time_text(seconds) == text

@@ -5,9 +5,9 @@ import importlib.util
 import re
 import sys
 
-from dynamics_node.ros.command_line import parser
 from dynamics_node.ros.effort_guard.parameters import GUARD_PARAMETERS
-from dynamics_node.ros.parameter_table import PARAMETERS
+from dynamics_node.ros.parameters.table import PARAMETERS
+from dynamics_node.ros.support.command_line import parser
 import pytest
 from test_readme import DOCUMENTS, name_of, ROOT
 import yaml

@@ -4,7 +4,7 @@ from pathlib import Path
 import re
 
 from dynamics_node import RobotModel
-from dynamics_node.drawing import Picture
+from dynamics_node.visualization import Picture
 import numpy as np
 import pytest
 from support.robots import ARM7

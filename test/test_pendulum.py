@@ -40,7 +40,7 @@ def test_the_urdf_has_the_lectures_pseudo_inertia():
     np.testing.assert_allclose(link_pseudo_inertia(rod.inertial), LECTURE_J, rtol=0, atol=4 * EPS)
 
 
-def test_the_closed_form_of_the_cylinder_is_the_lectures_pseudo_inertia():
+def test_the_recursive_of_the_cylinder_is_the_lectures_pseudo_inertia():
     along_x = np.array([[0, 0, 1, -L / 2], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
     np.testing.assert_allclose(cylinder(M, R, L, along_x), LECTURE_J, rtol=0, atol=4 * EPS)
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 import re
 
-from dynamics_node.kernels.specialised import is_supported
+from dynamics_node.codegen import is_supported
 import pytest
 
 ROOT = Path(__file__).parents[1]

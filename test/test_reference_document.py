@@ -4,7 +4,7 @@ from pathlib import Path
 import re
 import sys
 
-from dynamics_node.ros.parameter_table import PARAMETERS
+from dynamics_node.ros.parameters.table import PARAMETERS
 import pytest
 from rcl_interfaces.msg import ParameterType
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters

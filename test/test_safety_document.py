@@ -3,14 +3,10 @@
 from pathlib import Path
 import re
 
-from dynamics_node.ros import command_output, controller_check, main, node, signals
-from dynamics_node.safety import (
-    effort_output,
-    joint_state_buffer,
-    motion_limits,
-    stamps,
-    torque_path,
-)
+from dynamics_node.ros import main, node
+from dynamics_node.ros.support import process
+from dynamics_node.ros.torque_path import command_output, controller_check
+from dynamics_node.safety import effort_output, joint_state_buffer, motion_limits, torque_path
 import pytest
 
 TESTS = Path(__file__).parent
@@ -53,7 +49,7 @@ def test_the_numbers_are_those_of_the_code(text):
         ('impossible jump', motion_limits.JUMP_MARGIN),
         ('impossible jumps in a row', joint_state_buffer.MAX_JUMPS),
         ('shortest time between two states', motion_limits.SHORTEST_STEP),
-        ('a stamp may differ', stamps.SMALLEST_TOLERANCE),
+        ('a stamp may differ', joint_state_buffer.SMALLEST_TOLERANCE),
         ('longest time above', effort_output.LONGEST_SATURATION),
         ('longest ramp of a stop after a fault', effort_output.MAX_FAULT_RAMP),
         ('longest stop without a ramp', effort_output.ZERO_WITHIN),
@@ -63,7 +59,7 @@ def test_the_numbers_are_those_of_the_code(text):
         ('other publishers', node.CHECK_EVERY + command_output.IDLE_TICK),
         ('longest time without that search', torque_path.MAX_MONITOR_AGE),
         ('time a controller has', controller_check.ANSWER_WITHIN),
-        ('signals closer together', signals.SAME_SIGNAL),
+        ('signals closer together', process.SAME_SIGNAL),
         ('longest stop after a signal', main.GIVE_UP_AFTER),
         ('zero after a second signal', main.HURRY_WITHIN),
         ('an executor that raises', main.FAILING_FOR),

@@ -28,7 +28,7 @@ def test_it_is_one_that_the_node_understands(document, service, kind, request_te
     package, folder, name = kind.split('/')
     service_type = getattr(importlib.import_module(f'{package}.{folder}'), name)
     fill(service_type.Request(), yaml.safe_load(request_text.strip("'") or '{}'))
-    code = ''.join(path.read_text() for path in (ROOT / 'dynamics_node' / 'ros').rglob('*.py'))
+    code = ''.join(path.read_text() for path in (ROOT / 'dynamics_node').rglob('*.py'))
     # Its name stands in the code, beside its type.
     assert f"{name}, '{Path(service).name}'" in code or f"{name}, '~/{Path(service).name}'" in code
 

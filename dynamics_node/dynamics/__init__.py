@@ -6,13 +6,12 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 """
 
 from .compensation import Compensation
+from .effort_limits import MaxPayload, over_limit, OverLimit
 from .friction import Friction
-from .held_joints import forward_dynamics_held
 from .joint_selection import JointSelection
-from .max_payload import MaxPayload
+from .locked_joints import forward_dynamics_held
 from .momentum_observer import MomentumObserver
 from .one_off import one_off_model
-from .over_limit import over_limit, OverLimit
 from .payload import Payload
 from .robot_model import RobotModel
 from .terms import DynamicsTerms

@@ -2,7 +2,7 @@
 
 from .arguments import gravity_vector
 from .robot_model import RobotModel, STANDARD_GRAVITY
-from .specialisation import Specialisation
+from ..codegen.manager import Specialisation
 from ..kernels.packing import pack
 
 

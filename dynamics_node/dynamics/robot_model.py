@@ -5,16 +5,16 @@ import inspect
 import numpy as np
 
 from .arguments import check_link, gravity_vector, per_joint
-from .evaluation import Evaluation, SHAPES
+from .batch import Evaluation, SHAPES
+from .effort_limits import max_payload
 from .friction import make_friction, SMOOTHING_VELOCITY
-from .max_payload import max_payload
 from .payload import loaded_inertia, make_payload
-from .specialisation import Specialisation
 from .terms import DynamicsTerms
 from .trajectory import complete_trajectory
+from ..codegen import make_callable
+from ..codegen.manager import Specialisation
 from ..errors import ArgumentError
 from ..kernels.packing import pack
-from ..kernels.specialised import make_callable
 from ..model import build_tree
 from ..model.tree import REVOLUTE
 from ..urdf import read_urdf

@@ -1,10 +1,10 @@
 """Trajectories of points: the derivatives that are missing, by a spline."""
 
 from dataclasses import dataclass
+import itertools
 
 import numpy as np
 
-from .spline import spline_slopes
 from ..errors import ArgumentError
 
 
@@ -213,3 +213,64 @@ def _words(*parts):
             where = '' if missing == len(given) else f' of {missing} of {len(given)} points'
             sentences.append(f'{name}{where} were not given: {source}')
     return '; '.join(sentences)
+
+
+def spline_slopes(time, values, given, slopes):
+    """
+    Compute the slopes of the cubic spline through some values where they are not given.
+
+    The spline is twice differentiable at every point whose slope is not given. At an end without
+    a slope the two outermost pieces are one cubic; if that does not fix the slope, because there
+    are no more points, the piece is a parabola, or a line.
+
+    Parameters
+    ----------
+    time : numpy.ndarray, shape (N,)
+        Strictly increasing, s; N >= 2.
+    values : numpy.ndarray, shape (N, n)
+        n functions of time.
+    given : numpy.ndarray of bool, shape (N,)
+        Where the slopes are known.
+    slopes : numpy.ndarray, shape (N, n)
+        Overwritten where they are not given; unit of the values per s. NaN if they are beyond
+        what numbers can hold.
+
+    References
+    ----------
+    docs/mathematics.md, equation (30).
+
+    """
+    # A point whose slope is known divides the spline into two that know nothing of each other.
+    last = len(time) - 1
+    ends = np.union1d(np.flatnonzero(given), [0, last])
+    for begin, end in itertools.pairwise(ends):
+        if end - begin > 1 or not (given[begin] and given[end]):
+            _solve_slopes(
+                time[begin : end + 1],
+                values[begin : end + 1],
+                given[[begin, end]],
+                slopes[begin : end + 1],
+            )
+
+
+def _solve_slopes(time, values, given, slopes):
+    if len(time) == 2:
+        # scipy would take the secant for the slope of an end that is free.
+        secant = (values[1] - values[0]) / (time[1] - time[0])
+        if not given[0]:
+            slopes[0] = 2.0 * secant - slopes[1] if given[1] else secant
+        if not given[1]:
+            slopes[1] = 2.0 * secant - slopes[0]
+        return
+    # Loading it takes as long as loading the rest of the library.
+    from scipy.interpolate import CubicSpline
+
+    kinds = tuple(
+        (1, slopes[end]) if is_given else 'not-a-knot'
+        for end, is_given in zip((0, -1), given, strict=True)
+    )
+    inner = slice(1 if given[0] else 0, -1 if given[1] else None)
+    try:
+        slopes[inner] = CubicSpline(time, values, bc_type=kinds)(time, 1)[inner]
+    except ValueError:  # slopes beyond what numbers can hold
+        slopes[inner] = np.nan

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .closed_form import (
+from .recursive import (
     AXIS,
     COORDINATE,
     INERTIA,

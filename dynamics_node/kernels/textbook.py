@@ -1,5 +1,5 @@
 """
-The textbook formulas, literally: the specification of what `closed_form` computes.
+The textbook formulas, literally: the specification of what `recursive` computes.
 
 Slow on purpose. Every sum of docs/mathematics.md, section 3, is written as it stands there,
 with the derivatives of the 4x4 transforms by the product rule. Nothing is shared with the

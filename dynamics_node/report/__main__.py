@@ -98,7 +98,7 @@ def _path(text):
     if path.is_file():
         return path
     # A pipe, as of <(xacro arm.urdf.xacro) in a shell. More than anybody takes is not read.
-    from ..urdf.guard import MAX_BYTES
+    from ..urdf.input_limits import MAX_BYTES
 
     with path.open('rb') as stream:
         return stream.read(MAX_BYTES + 1)

@@ -6,7 +6,7 @@ import numpy as np
 
 from .report import BodyEntry, JointEntry, LinkEntry
 from ..inertia import consistency_report, mass_and_com
-from ..model.mimic import resolve_mimic
+from ..model.build import resolve_mimic
 from ..urdf.inertial import link_pseudo_inertia
 
 

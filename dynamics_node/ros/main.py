@@ -7,8 +7,7 @@ import threading
 import time
 import traceback
 
-from .signals import Signals
-from .unblocked_output import UnblockedOutput
+from .support.process import Signals, UnblockedOutput
 
 # Time that a stop may take after the first signal and after the second, s; launch kills after 5.
 STOP_WITHIN = 2.5
@@ -61,7 +60,7 @@ def _run(args, signals):
     try:
         # rclpy's own handlers would end the context before the arm has been brought to rest.
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        from .command_line import parse
+        from .support.command_line import parse
 
         options = parse(sys.argv if args is None else args)
         node, executor = _start(signals, options)
@@ -81,8 +80,8 @@ def _run(args, signals):
 def _start(signals, options):
     # No node if a signal came first. The compiled kernels and the URDF parser are loaded here,
     # before the first callback could wait for them.
-    from .executor import make_executor
     from .node import DynamicsNode
+    from .support.executor import make_executor
     from ..dynamics import RobotModel
     from ..kernels.warm_up import warm_up
 

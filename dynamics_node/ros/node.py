@@ -6,28 +6,28 @@ import time
 import numpy as np
 from rclpy.node import Node
 
-from .callback_groups import ServiceGroup
-from .change_check import check_change
-from .command_output import CommandOutput, output_settings
-from .controller_check import Controllers
-from .description_source import DescriptionSource
-from .diagnostics import Diagnostics
-from .enabling import Enabling
-from .external_torque import ExternalTorque
-from .guard import logged
-from .hints import Hints
-from .model_settings import PER_JOINT
-from .parameter_table import ParameterError
-from .parameters import Parameters
-from .protection import Protection
-from .publisher_monitor import PublisherMonitor
-from .results import Results
-from .robot import read_robot
-from .services import DynamicsServices
-from .setting_services import SettingServices
-from .state_input import StateInput
-from .throttle import Throttle
-from .trajectory_services import TrajectoryServices
+from .parameters.live_change_check import check_change
+from .parameters.model_settings import PER_JOINT
+from .parameters.parameters import Parameters
+from .parameters.table import ParameterError
+from .publishers.diagnostics import Diagnostics
+from .publishers.external_torque import ExternalTorque
+from .publishers.result_publishers import Results
+from .services.payload_gravity_services import SettingServices
+from .services.state_services import DynamicsServices
+from .services.trajectory_services import TrajectoryServices
+from .support.callback_errors import logged
+from .support.callback_groups import ServiceGroup
+from .support.description_source import DescriptionSource
+from .support.hints import Hints
+from .support.throttling import Throttle
+from .torque_path.active_robot import read_robot
+from .torque_path.command_output import CommandOutput, output_settings
+from .torque_path.controller_check import Controllers
+from .torque_path.enabling import Enabling
+from .torque_path.joint_state_input import StateInput
+from .torque_path.protection import Protection
+from .torque_path.publisher_monitor import PublisherMonitor
 from ..errors import DynamicsError
 from ..safety import EffortLimiter, GravityChange
 

@@ -9,15 +9,13 @@ may be published that did not pass `EffortLimiter`.
 
 """
 
-from .effort_at_rest import EffortAtRest
 from .effort_limiter import EffortLimiter, InvalidEffortError
 from .effort_output import EffortOutput, OutputSettings
+from .effort_plausibility import EffortAtRest
 from .gravity_change import GravityChange
-from .joint_state_buffer import JointStateBuffer
+from .joint_state_buffer import JointStateBuffer, RejectedStateError, StampTolerance
 from .motion_limits import MotionLimits
-from .rejected import RejectedStateError
 from .self_compensation import self_compensating
-from .stamps import StampTolerance
 from .state_machine import OutputState, OutputStateMachine
 from .torque_path import TorquePath
 

@@ -6,9 +6,7 @@ import math
 import numpy as np
 
 from .motion_limits import MotionLimits
-from .rejected import RejectedStateError
-from .stamps import StampTolerance
-from ..errors import quoted
+from ..errors import DynamicsError, quoted
 
 # More names than any robot has: such a message is refused before its arrays are touched.
 MAX_NAMES = 4096
@@ -388,3 +386,83 @@ class JointStateBuffer:
 def too_many_names(count):
     """Return the error about a message with more names than any robot has."""
     return RejectedStateError('too many names', f'expected at most {MAX_NAMES} names, got {count}')
+
+
+class RejectedStateError(DynamicsError):
+    """
+    A joint state message was dropped.
+
+    Attributes
+    ----------
+    kind : str
+        Short and constant, for counting.
+    is_fault : bool
+        Whether the arm must not be driven any further.
+
+    """
+
+    def __init__(self, kind, message, is_fault=False):
+        self.kind = kind
+        self.is_fault = is_fault
+        super().__init__(message)
+
+
+# However short the timeout: clocks of two machines that are synchronised differ by less.
+SMALLEST_TOLERANCE = 0.1
+
+
+class StampTolerance:
+    """
+    Compares stamps with the node's own clock.
+
+    Attributes
+    ----------
+    seconds : float
+        The largest difference that is accepted, in both directions, s.
+
+    """
+
+    def __init__(self, state_timeout):
+        """
+        Accept what is not older than a state may be.
+
+        Parameters
+        ----------
+        state_timeout : float
+            Largest age of a joint state, s.
+
+        """
+        self.seconds = max(state_timeout, SMALLEST_TOLERANCE)
+        self._nanoseconds = round(self.seconds * 1e9)
+
+    def check(self, stamp, clock):
+        """
+        Refuse a stamp that is too far from the clock.
+
+        Parameters
+        ----------
+        stamp : int
+            ns.
+        clock : int
+            The time at which the message arrived, on the clock that stamps belong to, ns.
+
+        Raises
+        ------
+        RejectedStateError
+            Kind 'stamp'; says by how much, and what to look for.
+
+        """
+        late = clock - stamp
+        if -self._nanoseconds <= late <= self._nanoseconds:
+            return
+        side = 'old' if late > 0 else 'in the future'
+        raise RejectedStateError(
+            'stamp',
+            f'expected a stamp within {self.seconds:g} s of the clock, got one '
+            f'{abs(late) * 1e-9:.3f} s {side}: synchronise the clocks of both machines, and '
+            'set use_sim_time on both sides or on neither',
+        )
+
+    def is_ahead(self, stamp, clock):
+        """Tell whether a stamp that was accepted once lies in the future of the clock by now."""
+        return stamp - clock > self._nanoseconds

@@ -6,9 +6,7 @@ import math
 import numpy as np
 
 from .effort_output import EffortOutput, STOP_PERIOD
-from .joint_state_buffer import JointStateBuffer
-from .rejected import RejectedStateError
-from .stamps import StampTolerance
+from .joint_state_buffer import JointStateBuffer, RejectedStateError, StampTolerance
 from .state_machine import OutputState
 
 # The nominal period of the joint states is the median of this many.

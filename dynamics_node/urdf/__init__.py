@@ -7,7 +7,7 @@ outside this room sees XML or yourdfpy.
 """
 
 from .description import Inertial, Joint, Link, Mimic, RobotDescription, Stated
-from .examination import Examination
+from .partial_read import Examination
 from .read import examine_urdf, read_urdf
 
 __all__ = [

@@ -7,13 +7,18 @@ from xml.parsers import expat
 
 import numpy as np
 
-from .attributes import is_number, LARGEST, number_problems
 from .description import Inertial, Joint, Link, Mimic, RobotDescription, Stated
-from .examination import Examination, sound_parts
-from .guard import check_text
 from .inertial import inertial_findings
-from .source import load_text
-from .structure import moved_links, root_link, structure_problems
+from .input_limits import check_text, load_text
+from .partial_read import Examination, sound_parts
+from .validation import (
+    is_number,
+    LARGEST,
+    moved_links,
+    number_problems,
+    root_link,
+    structure_problems,
+)
 from .yourdfpy_parser import urdf_class
 from ..errors import RobotDescriptionError
 

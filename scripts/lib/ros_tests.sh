@@ -3,8 +3,9 @@
 # is the same on every release. Sourced by test.sh.
 ros_tests=(
     test/ros
-    test/soak
-    test/fuzz
+    test/tools
+    test/demo
+    test/visualization
     test/benchmarks/test_node_latency.py
     test/safety/test_state_machine.py
     test/test_commands_in_documents.py

@@ -6,7 +6,7 @@ from pathlib import Path
 # Before mujoco is imported: it chooses its OpenGL when it is.
 os.environ.setdefault('MUJOCO_GL', 'egl')
 
-from dynamics_node.ros.demo.robot_text import mujoco_text
+from dynamics_node.demo.robot_text import mujoco_text
 import mujoco
 import numpy as np
 

@@ -3,9 +3,9 @@
 from pathlib import Path
 import re
 
-from dynamics_node.ros.command_line import parser
 from dynamics_node.ros.effort_guard.parameters import GUARD_PARAMETERS
-from dynamics_node.ros.parameter_table import PARAMETERS
+from dynamics_node.ros.parameters.table import PARAMETERS
+from dynamics_node.ros.support.command_line import parser
 
 from . import graph, interfaces, launch_files
 
@@ -60,9 +60,9 @@ PROGRAMS = """| command | what it is |
 | `ros2 run dynamics_node demo` | the demo: `make demo` without make |
 
 Where ROS 2 comes from PyPI there is no `ros2` command; `python -m dynamics_node.ros.main`,
-`python -m dynamics_node.ros.markers`, `python -m dynamics_node.report`,
-`python -m dynamics_node.ros.effort_guard.main`, `python -m dynamics_node.ros.demo.simulated_robot`
-and `python -m dynamics_node.ros.demo.demo` are the same programs."""
+`python -m dynamics_node.visualization.markers`, `python -m dynamics_node.report`,
+`python -m dynamics_node.ros.effort_guard.main`, `python -m dynamics_node.demo.simulated_robot`
+and `python -m dynamics_node.demo.__main__` are the same programs."""
 
 MARKERS = """`ros2 run dynamics_node markers` draws for one dynamics node, in a process of its own.
 Its one parameter, `dynamics_node`, is the name of that node (default `dynamics_node`), relative to

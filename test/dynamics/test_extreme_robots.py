@@ -3,9 +3,9 @@
 from dynamics_node import RobotModel
 import numpy as np
 import pytest
+from support.cross_library import QUANTITIES
 from support.extreme_robots import chain, extreme_robots, FEATHER
 from support.extreme_sweep import compare_extreme
-from support.routes import QUANTITIES
 
 ROBOTS = extreme_robots()
 

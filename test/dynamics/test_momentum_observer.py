@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 import mujoco
 import numpy as np
 import pytest
-from support.carried import with_payload_link
 from support.free_swing import free_arm
 from support.mujoco_oracle import MujocoOracle
 from support.pushed_motion import halved, irregular_times, Motion, PushedRobot, tip
+from support.random_payload import with_payload_link
 from support.robots import ARM7, PENDULUM, public_robot, random_urdf
 
 GAIN = 100.0

@@ -3,10 +3,10 @@
 from dynamics_node import ArgumentError, InertiaError, RobotModel
 import numpy as np
 import pytest
-from support.carried import random_body, with_payload_link
 from support.comparison import assert_terms_agree
 from support.mujoco_oracle import MujocoOracle
 from support.pinocchio_oracle import PinocchioOracle
+from support.random_payload import random_body, with_payload_link
 from support.robots import ARM7, public_robot, random_state, random_urdf
 
 RELATIVE = 1e-11

@@ -3,9 +3,9 @@
 from dynamics_node import RobotModel, SingularMassMatrixError
 import numpy as np
 import pytest
+from support.cross_library import QUANTITIES
+from support.result_cache import BOUND, compare, MUJOCO_BOUND, sweep
 from support.robots import public_robot, public_robots
-from support.routes import QUANTITIES
-from support.sweep import BOUND, compare, MUJOCO_BOUND, sweep
 
 NAMES = public_robots()
 

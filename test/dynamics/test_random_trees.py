@@ -4,8 +4,8 @@ from dynamics_node import RobotModel
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
+from support.cross_library import QUANTITIES, Routes
 from support.robots import random_urdf
-from support.routes import QUANTITIES, Routes
 
 # Pinocchio's own bound, and MuJoCo's: see support/sweep.py.
 BOUNDS = {'exact': 1e-11, 'pinocchio': 1e-11, 'mujoco': 1e-9}

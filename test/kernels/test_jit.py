@@ -14,14 +14,14 @@ EXAMPLES = 10
 TESTS = (
     'test/dynamics/test_identities.py',
     'test/dynamics/test_random_trees.py',
-    'test/kernels/test_closed_form.py',
+    'test/kernels/test_recursive.py',
     'test/test_pendulum.py',
 )
 
 IS_INTERPRETED = """
-from dynamics_node.kernels import closed_form
+from dynamics_node.kernels import recursive
 from numba.core.dispatcher import Dispatcher
-kernels = (closed_form.dynamics, closed_form.mass_matrix, closed_form.gravity_torque)
+kernels = (recursive.dynamics, recursive.mass_matrix, recursive.gravity_torque)
 print([isinstance(kernel, Dispatcher) for kernel in kernels])
 """
 

@@ -8,11 +8,11 @@ ROOT = Path(__file__).parents[2]
 ALL_THAT_COMPUTES = """
 import numpy as np
 from dynamics_node import RobotModel, complete_trajectory
-from dynamics_node.kernels import closed_form, warm_up
-from dynamics_node.kernels.specialised import are_ordinary
+from dynamics_node.kernels import recursive, warm_up
+from dynamics_node.codegen import are_ordinary
 
 def compiled():
-    return {name: len(kernel.signatures) for name, kernel in vars(closed_form).items()
+    return {name: len(kernel.signatures) for name, kernel in vars(recursive).items()
             if hasattr(kernel, 'signatures')} | {'are_ordinary': 0}
 
 warm_up.warm_up()

@@ -1,6 +1,6 @@
 """The options of the process."""
 
-from dynamics_node.ros.command_line import parse
+from dynamics_node.ros.support.command_line import parse
 import pytest
 
 

@@ -8,10 +8,10 @@ import time
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node import RobotModel
-from dynamics_node.ros.command_output import CommandOutput, output_settings
 from dynamics_node.ros.node import _limiter
-from dynamics_node.ros.parameter_table import check_all
-from dynamics_node.ros.robot import Robot
+from dynamics_node.ros.parameters.table import check_all
+from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.command_output import CommandOutput, output_settings
 from dynamics_node.safety.effort_output import MAX_RAMP_STEP
 import numpy as np
 import pytest

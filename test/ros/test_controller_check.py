@@ -1,6 +1,6 @@
 """What the listeners of the command topic say about their joints and lifecycle, over DDS."""
 
-from dynamics_node.ros.controller_check import Controllers
+from dynamics_node.ros.torque_path.controller_check import Controllers
 from lifecycle_msgs.msg import State, TransitionEvent
 from lifecycle_msgs.srv import GetState
 import pytest

@@ -9,8 +9,8 @@ import time
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.msg import OutputState
 from dynamics_node.ros.effort_guard.parameters import check_all
-from dynamics_node.ros.parameter import ParameterError
-from dynamics_node.ros.signals import SAME_SIGNAL
+from dynamics_node.ros.parameters.declaration import ParameterError
+from dynamics_node.ros.support.process import SAME_SIGNAL
 from dynamics_node.safety.effort_guard import LONGEST_STEP
 import numpy as np
 import pytest
@@ -442,7 +442,7 @@ def test_it_needs_nothing_of_the_library():
 def test_a_log_that_is_not_read_does_not_block_it():
     code = (
         'import os, sys\n'
-        'from dynamics_node.ros.unblocked_output import UnblockedOutput\n'
+        'from dynamics_node.ros.support.process import UnblockedOutput\n'
         'output = UnblockedOutput(2)\n'
         'for i in range(3000):\n'
         '    try:\n'
@@ -465,7 +465,7 @@ def test_a_log_that_is_not_read_does_not_block_it():
 def test_what_is_logged_arrives():
     code = (
         'import os\n'
-        'from dynamics_node.ros.unblocked_output import UnblockedOutput\n'
+        'from dynamics_node.ros.support.process import UnblockedOutput\n'
         'output = UnblockedOutput(2)\n'
         'os.write(2, b"first\\n")\n'
         'output.close()\n'

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 
 from dynamics_node import RobotModel
 from dynamics_node.kernels.warm_up import warm_up
-from dynamics_node.ros.enabling import Enabling
 from dynamics_node.ros.node import _limiter
-from dynamics_node.ros.parameter_table import check_all
-from dynamics_node.ros.robot import Robot
+from dynamics_node.ros.parameters.table import check_all
+from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.enabling import Enabling
 from dynamics_node.safety import OutputSettings, TorquePath
 import pytest
 from std_srvs.srv import SetBool

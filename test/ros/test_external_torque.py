@@ -8,8 +8,8 @@ import types
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamics_node import RobotModel
-from dynamics_node.ros.external_torque import ExternalTorque
-from dynamics_node.ros.robot import Robot
+from dynamics_node.ros.publishers.external_torque import ExternalTorque
+from dynamics_node.ros.torque_path.active_robot import Robot
 from dynamics_node.safety import RejectedStateError
 import numpy as np
 import pytest

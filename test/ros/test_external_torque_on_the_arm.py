@@ -7,9 +7,9 @@ MuJoCo simulates the arm and judges the estimate by its own Jacobian; all times 
 
 import bisect
 
+from dynamics_node.demo.missing_values import add_missing_damping
+from dynamics_node.demo.mujoco_arm import MujocoArm
 from dynamics_node.dynamics.momentum_observer import LONGEST_STEP
-from dynamics_node.ros.demo.damping import add_missing_damping
-from dynamics_node.ros.demo.mujoco_arm import MujocoArm
 import numpy as np
 import pytest
 from rcl_interfaces.msg import ParameterType, ParameterValue

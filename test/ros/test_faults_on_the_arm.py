@@ -14,15 +14,15 @@ import numpy as np
 import pytest
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
+from soak.expected_sag import sink
 from soak.rig import COMMAND_TOPIC, Rig
-from soak.sink import sink
 from std_msgs.msg import Float64MultiArray
 
 # Shorter than by default, for the tests' sake; the timeout is longer, for a busy machine's.
 TIMEOUT, START_RAMP, STOP_RAMP = 0.5, 0.2, 0.5
 # Where an arm that is held may be pushed to by a message that is nearly right, rad.
 HELD = math.radians(1.0)
-# What a simulation in real time that was late may catch up, s; see ros/demo/pacing.py.
+# What a simulation in real time that was late may catch up, s; see demo/timing.py.
 CATCHES_UP = 0.05
 
 

@@ -3,14 +3,14 @@
 from types import SimpleNamespace
 
 from dynamics_node import RobotModel
-from dynamics_node.ros.description_source import DescriptionSource
-from dynamics_node.ros.hints import Hints, PATIENCE, REPEAT_EVERY, unheard
-from dynamics_node.ros.robot import Robot
+from dynamics_node.ros.support.description_source import DescriptionSource
+from dynamics_node.ros.support.hints import Hints, mismatches, PATIENCE, REPEAT_EVERY, unheard
+from dynamics_node.ros.torque_path.active_robot import Robot
 from dynamics_node.safety import RejectedStateError
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Log
-from rclpy.qos import qos_profile_sensor_data
+from rclpy.qos import qos_profile_sensor_data, QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from support.processes import Client, LATCHED
@@ -303,3 +303,47 @@ def test_the_node_says_it_by_itself(client, start):
         'without_description',
         'with_other_names',
     }
+
+
+RELIABLE = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE)
+BEST_EFFORT = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.BEST_EFFORT)
+
+
+@pytest.fixture
+def stranger():
+    """Return a second client: one process cannot have two types on a topic."""
+    stranger = Client()
+    yield stranger
+    stranger.close()
+
+
+def found(client, stranger, kind, qos):
+    """Return the mismatches of a subscription with another client's publisher."""
+    subscription = client.node.create_subscription(JointState, 'states', lambda _: None, RELIABLE)
+    stranger.node.create_publisher(kind, 'states', qos)
+    # The name of a publisher's node comes some time after the publisher.
+    client.until(
+        lambda: [
+            info
+            for info in client.node.get_publishers_info_by_topic('/states')
+            if info.node_name == 'test_client'
+        ]
+    )
+    return mismatches(client.node, subscription)
+
+
+def test_what_fits_is_not_mentioned(client, stranger):
+    assert found(client, stranger, JointState, RELIABLE) == []
+
+
+def test_another_quality_of_service_is_named_with_the_publisher(client, stranger):
+    [text] = found(client, stranger, JointState, BEST_EFFORT)
+    assert text.startswith('the quality of service of /test_client does not fit: ')
+    assert 'reliab' in text.lower()
+
+
+def test_another_type_is_named_with_what_was_expected(client, stranger):
+    [text] = found(client, stranger, String, RELIABLE)
+    assert text == (
+        '/test_client publishes std_msgs/msg/String there, expected sensor_msgs/msg/JointState'
+    )

@@ -1,9 +1,9 @@
 """From parameters to the model: each of them changes it, and in the order of the joints."""
 
 from dynamics_node import ArgumentError, InertiaError, RobotModel
-from dynamics_node.ros.model_settings import configured, tensor
-from dynamics_node.ros.parameter_table import check_all
-from dynamics_node.ros.robot import Robot
+from dynamics_node.ros.parameters.model_settings import configured, tensor
+from dynamics_node.ros.parameters.table import check_all
+from dynamics_node.ros.torque_path.active_robot import Robot
 import numpy as np
 import pytest
 from support.robots import ARM7

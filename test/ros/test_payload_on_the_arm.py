@@ -15,7 +15,7 @@ import pytest
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from soak.rig import Rig
-from support.carried import with_payload_link
+from support.random_payload import with_payload_link
 from support.robots import ARM7
 
 MASS, COM, TENSOR = 1.2, (0.01, -0.02, 0.06), 0.002 * np.eye(3)

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from dynamics_node.ros.protection import Protection
+from dynamics_node.ros.torque_path.protection import Protection
 import pytest
 
 

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from dynamics_node.ros.publisher_monitor import PublisherMonitor
+from dynamics_node.ros.torque_path.publisher_monitor import PublisherMonitor
 from std_msgs.msg import Float64MultiArray, String
 from support.processes import Client
 

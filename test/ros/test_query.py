@@ -2,8 +2,8 @@
 
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node import ArgumentError, RobotModel
-from dynamics_node.ros.query import finite, Query
-from dynamics_node.ros.robot import Robot
+from dynamics_node.ros.services.query import finite, Query
+from dynamics_node.ros.torque_path.active_robot import Robot
 import numpy as np
 import pytest
 from support.robots import ARM7

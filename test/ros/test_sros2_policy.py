@@ -4,7 +4,7 @@ from pathlib import Path
 import re
 
 from dynamics_interfaces.srv import GetDynamics
-from dynamics_node.ros.parameter_table import PARAMETERS
+from dynamics_node.ros.parameters.table import PARAMETERS
 import pytest
 import rclpy
 from rclpy.node import NodeNameNonExistentError

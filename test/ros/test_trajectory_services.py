@@ -4,17 +4,17 @@ import types
 
 from dynamics_interfaces.srv import ComputeTrajectoryEffort, GetMaxPayload
 from dynamics_node import RobotModel
-from dynamics_node.ros.parameter_table import check_all
-from dynamics_node.ros.robot import Robot
-from dynamics_node.ros.trajectory_services import MOST_WHILE_DRIVING, TrajectoryServices
+from dynamics_node.ros.parameters.table import check_all
+from dynamics_node.ros.services.trajectory_services import MOST_WHILE_DRIVING, TrajectoryServices
+from dynamics_node.ros.torque_path.active_robot import Robot
 from geometry_msgs.msg import Point
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterValue
 from rcl_interfaces.srv import SetParameters
-from support.carried import with_payload_link
 from support.mujoco_oracle import MujocoOracle
 from support.pinocchio_oracle import PinocchioOracle
+from support.random_payload import with_payload_link
 from support.robots import ARM7
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 

@@ -34,7 +34,7 @@ class Arm:
             [
                 sys.executable,
                 '-m',
-                'dynamics_node.ros.demo.simulated_robot',
+                'dynamics_node.demo.simulated_robot',
                 '--ros-args',
                 '-r',
                 f'__ns:=/{side}',

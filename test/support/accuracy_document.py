@@ -7,11 +7,11 @@ import re
 from textwrap import fill
 
 from .comparison import CANCELLED
+from .cross_library import QUANTITIES, worst_of
 from .extreme_robots import extreme_robots
 from .extreme_sweep import compare_extreme
 from .free_swing import ARMS, SAMPLES, SECONDS, swing, TOLERANCE
-from .routes import QUANTITIES, worst_of
-from .sweep import BOUND, STATES, sweep
+from .result_cache import BOUND, STATES, sweep
 
 PATH = Path(__file__).parents[2] / 'docs' / 'accuracy.md'
 

@@ -5,7 +5,7 @@ from functools import cache
 from dynamics_node import RobotModel
 
 from .extreme_robots import extreme_robots
-from .sweep import row
+from .result_cache import row
 
 
 @cache

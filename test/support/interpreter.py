@@ -2,7 +2,7 @@
 
 import math
 
-from dynamics_node.kernels.specialised.symbols import Symbol
+from dynamics_node.codegen.trace import Symbol
 
 _FUNCTIONS = {
     'add': lambda a, b: a + b,

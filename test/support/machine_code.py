@@ -1,6 +1,6 @@
 """For tests of a robot's own machine code, which Python 3.10 cannot call."""
 
-from dynamics_node.kernels.specialised import is_supported
+from dynamics_node.codegen import is_supported
 import pytest
 
 needs_machine_code = pytest.mark.skipif(

@@ -76,7 +76,7 @@ class NodeProcess:
 class MarkersProcess(NodeProcess):
     """The executable `markers` with given parameters."""
 
-    module = 'dynamics_node.ros.markers'
+    module = 'dynamics_node.visualization.markers'
 
 
 class Client:

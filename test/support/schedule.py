@@ -13,7 +13,7 @@ _WITH_PROCESSES = 'test/ros/test_'
 # But for these, whose tests share them.
 _SHARING = {
     'test/ros/test_services.py',
-    'test/ros/test_setting_services.py',
+    'test/ros/test_payload_gravity_services.py',
     'test/ros/test_trajectory_services.py',
     'test/ros/test_faults_on_the_arm.py',
     'test/ros/test_payload_on_the_arm.py',
@@ -36,15 +36,15 @@ _TOGETHER = {
 _FIRST = (
     'test/test_code_style.py',
     'test/benchmarks/test_node_latency.py',
-    'test/ros/demo/test_demo.py',
+    'test/demo/test_demo.py',
     'test/report/html/test_in_browser.py',
     'test/test_benchmarks.py',
     'test/dynamics/test_identities.py',
     'sweep',
-    'test/ros/demo/test_simulated_robot.py',
+    'test/demo/test_simulated_robot.py',
     'test/ros/test_services.py',
-    'test/dynamics/test_specialised_robots.py',
-    'test/dynamics/test_specialisation.py',
+    'test/codegen/test_robots.py',
+    'test/codegen/test_manager.py',
     'test/kernels/test_jit.py',
 )
 

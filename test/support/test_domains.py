@@ -3,8 +3,8 @@
 import subprocess
 import sys
 
-from support.domains import claim, DOMAINS
 from support.robots import ROBOTS
+from support.ros_domain import claim, DOMAINS
 
 CODE = 'from support.domains import claim; print(claim())'
 

@@ -105,7 +105,7 @@ def test_nothing_is_opened_whatever_the_addresses_say():
         ],
         capture_output=True,
         text=True,
-        cwd=Path(__file__).parents[1],
+        cwd=Path(__file__).parents[2] / 'tools',
         check=False,
     )
     assert run.returncode == 0, run.stderr

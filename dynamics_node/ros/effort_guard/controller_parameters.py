@@ -6,7 +6,7 @@ from rcl_interfaces.msg import ParameterDescriptor, ParameterType, SetParameters
 from rcl_interfaces.srv import GetParameters
 from rclpy.parameter import Parameter, parameter_value_to_python
 
-from ..guard import logged
+from ..support.callback_errors import logged
 
 _KINDS = {
     'joints': ParameterType.PARAMETER_STRING_ARRAY,

@@ -6,8 +6,7 @@ import sys
 import time
 import traceback
 
-from ..signals import Signals
-from ..unblocked_output import UnblockedOutput
+from ..support.process import Signals, UnblockedOutput
 
 # Time that the fade may take after a signal, and after a second one, s; launch kills after 5.
 STOP_WITHIN = 2.5

@@ -15,11 +15,10 @@ from std_srvs.srv import Trigger
 
 from .controller_parameters import ControllerParameters
 from .parameters import check_all, GUARD_PARAMETERS
-from ..declaring import declare
-from ..guard import logged
-from ..parameter import ParameterError
-from ..qos import COMMAND, NO_EVENTS, OUTPUT_STATE, RESULT
-from ..throttle import Throttle
+from ..parameters.declaration import declare, ParameterError
+from ..support.callback_errors import logged
+from ..support.qos import COMMAND, NO_EVENTS, OUTPUT_STATE, RESULT
+from ..support.throttling import Throttle
 from ...safety.effort_guard import EffortGuard, GuardSettings, LOOK_EVERY, PERIODS
 
 # How often the guard looks at the graph, s: who sends, who listens.

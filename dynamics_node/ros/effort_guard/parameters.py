@@ -1,6 +1,6 @@
 """Every parameter of the effort guard; docs/reference.md follows from this table."""
 
-from ..parameter import DOUBLE, DOUBLES, Parameter, ParameterError, TEXT
+from ..parameters.declaration import DOUBLE, DOUBLES, Parameter, ParameterError, TEXT
 from ...safety.effort_guard import GuardSettings
 
 GUARD_PARAMETERS = (

@@ -1,0 +1,36 @@
+"""This library before a robot has machine code of its own, and for very large robots."""
+
+import os
+
+from dynamics_node import RobotModel
+
+from .dynamics_node import calls_of, PACKAGE, VERSION
+
+__all__ = ['NAME', 'NOTE', 'PACKAGE', 'VERSION', 'calls']
+
+NAME = 'general kernel'
+NOTE = 'This library with `DYNAMICS_NODE_SPECIALISE=0`: compiled once for every robot.'
+
+
+def calls(robot):
+    """
+    Return the calls of a model without machine code of its own.
+
+    Parameters
+    ----------
+    robot : Robot
+
+    Returns
+    -------
+    dict of str to Call
+
+    """
+    before = os.environ.get('DYNAMICS_NODE_SPECIALISE')
+    os.environ['DYNAMICS_NODE_SPECIALISE'] = '0'
+    try:
+        model = RobotModel.from_urdf(robot.text)
+    finally:
+        del os.environ['DYNAMICS_NODE_SPECIALISE']
+        if before is not None:
+            os.environ['DYNAMICS_NODE_SPECIALISE'] = before
+    return calls_of(model)

@@ -1,0 +1,32 @@
+"""This library with a payload: the machine code that serves all of them."""
+
+from .dynamics_node import calls_of, PACKAGE, VERSION
+
+__all__ = ['NAME', 'NOTE', 'PACKAGE', 'VERSION', 'calls']
+
+NAME = 'dynamics_node, payload'
+NOTE = (
+    'The machine code that reads the inertia of the bodies when it runs, so one serves every '
+    'payload in the same time. This one is 1e-15 kg on the last link, so that the results '
+    'can be held against the others.'
+)
+_MASS = 1e-15
+
+
+def calls(robot):
+    """
+    Return the calls of a model with a payload.
+
+    Parameters
+    ----------
+    robot : Robot
+
+    Returns
+    -------
+    dict of str to Call
+
+    """
+    last = [link for link, frame in robot.model.tree.links.items() if frame.body >= 0][-1]
+    loaded = robot.model.with_payload(last, _MASS)
+    loaded.specialise()
+    return calls_of(loaded)

@@ -1,0 +1,466 @@
+"""
+The way in from Python: builtin functions that call machine code of one robot directly.
+
+For one state of a small arm, the arithmetic takes less time than Python's and numba's way of
+handing over five arrays. So each quantity gets an entry of its own, in the same machine code: it
+looks at the arguments, makes the arrays of the answer and computes, in one step. It takes the
+plain case only: positional arrays of float64, contiguous, of shape (n,), with finite numbers.
+Everything else (lists, batches, keywords, wrong shapes, NaN) goes to a Python function, which
+knows how to convert and what to say.
+
+Making the arrays of an answer takes as long as computing a small arm. So each entry keeps a few
+answers, and gives one out again when nobody holds it, or any array of it, any more: Python's own
+reference counts say so, and what is held is never touched. (So a finalizer of an answer, set by
+`weakref.finalize`, may have to wait for the end of the model.)
+
+The entry reads the arguments as numpy and CPython lay them out in memory (`PyArrayObject` and
+`PyMethodDef`, both public and unchanged for many years). `is_supported` looks whether it is so.
+
+"""
+
+import ctypes
+import functools
+import inspect
+import sys
+import sysconfig
+import weakref
+
+import numpy as np
+
+from .llvm_ir import Code
+from .sine import LARGEST_ANGLE
+
+# Bytes from the begin of an object to the field.
+_REFERENCES, _TYPE = 0, 8
+_DATA, _DIMENSION_COUNT, _DIMENSIONS, _DESCRIPTION, _FLAGS, _WEAK = 16, 24, 32, 56, 64, 72
+_CONTIGUOUS_AND_ALIGNED = 0x101
+_OWN_PLAIN = 0x505  # The same, owner of its data, and writeable.
+_FLOAT64 = 12  # NPY_DOUBLE
+_METHOD_FLAGS = 0x80 | 0x02  # METH_FASTCALL | METH_KEYWORDS
+_PYARRAY_NEW = 93  # Place in numpy's table of C functions.
+
+# What is larger is left to the general kernel, with NaN and infinity.
+LARGEST_NUMBER = 1e100
+
+# Slots of the context, 8 bytes each: addresses of Python's and numpy's objects and functions.
+_SLOTS = (
+    'fallback',
+    'array_type',
+    'float64',
+    'terms_type',
+    'new_array',
+    'new_object',
+    'set_item',
+    'release',
+    'call',
+    'numbers',
+)
+_KEPT = len(_SLOTS)  # From here: answers, each followed by its arrays.
+# A loop that holds the last answer, and the one before, still finds a free one.
+_ANSWERS = 4
+
+
+def entry_function(quantity):
+    """
+    Return the LLVM function that Python calls.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        One output becomes an array, more become a tuple of the context's `terms_type`.
+
+    Returns
+    -------
+    str
+
+    """
+    entry = _Entry(quantity)
+    entry.check_arguments()
+    for place in range(_ANSWERS):
+        entry.take_kept(place)
+    entry.make_new()
+    entry.compute()
+    entry.fall_back()
+    return '\n'.join(
+        [
+            f'define ptr @{quantity.name}_call(ptr %self, ptr %arguments, i64 %count, ptr '
+            '%keywords) {',
+            'entry:',
+            *entry.code.lines,
+            '}',
+        ]
+    )
+
+
+class _Entry:
+    # Writes the entry of one quantity, part after part.
+
+    def __init__(self, quantity):
+        self.code = Code()
+        self.quantity = quantity
+        self.arrays = []
+        self.data = []
+        self._labels = 0
+        # Room on the stack is taken first, so that it is taken once.
+        self.shapes = [
+            self.code.line(f'alloca [{output.ndim} x i64]') for output in quantity.outputs
+        ]
+        self.out = [self.code.line('alloca ptr') for _ in quantity.outputs]
+        self.answer = self.code.line('alloca ptr')
+        self.context = self.load('ptr', '%self', _DATA)
+
+    def load(self, kind, pointer, offset):
+        address = self.code.line(f'getelementptr i8, ptr {pointer}, i64 {offset}')
+        return self.code.line(f'load {kind}, ptr {address}')
+
+    def slot(self, name):
+        return self.load('ptr', self.context, 8 * _SLOTS.index(name))
+
+    def label(self):
+        self._labels += 1
+        return f'step{self._labels}'
+
+    def demand(self, condition, otherwise='slow'):
+        # Goes on only if a condition holds.
+        label = self.label()
+        self.code.do(f'br i1 {condition}, label %{label}, label %{otherwise}')
+        self.code.lines.append(f'{label}:')
+
+    def all_of(self, conditions):
+        return functools.reduce(lambda a, b: self.code.line(f'and i1 {a}, {b}'), conditions)
+
+    def equal(self, kind, a, b):
+        return self.code.line(f'icmp eq {kind} {a}, {b}')
+
+    def check_arguments(self):
+        quantity = self.quantity
+        self.demand(
+            self.all_of(
+                [
+                    self.equal('i64', '%count', len(quantity.inputs)),
+                    self.equal('ptr', '%keywords', 'null'),
+                ]
+            )
+        )
+        array_type, float64 = self.slot('array_type'), self.slot('float64')
+        for index in range(len(quantity.inputs)):
+            argument = self.load('ptr', '%arguments', 8 * index)
+            self.demand(self.equal('ptr', self.load('ptr', argument, _TYPE), array_type))
+            flags = self.code.line(
+                f'and i32 {self.load("i32", argument, _FLAGS)}, {_CONTIGUOUS_AND_ALIGNED}'
+            )
+            self.demand(
+                self.all_of(
+                    [
+                        self.equal('ptr', self.load('ptr', argument, _DESCRIPTION), float64),
+                        self.equal('i32', self.load('i32', argument, _DIMENSION_COUNT), 1),
+                        self.equal('i32', flags, _CONTIGUOUS_AND_ALIGNED),
+                    ]
+                )
+            )
+            length = self.load('i64', self.load('ptr', argument, _DIMENSIONS), 0)
+            self.demand(self.equal('i64', length, quantity.joint_count))
+            self.data.append(self.load('ptr', argument, _DATA))
+        self.demand(
+            self.all_of(
+                [
+                    self._is_ordinary(name, data)
+                    for name, data in zip(quantity.inputs, self.data, strict=True)
+                ]
+            )
+        )
+
+    def _is_ordinary(self, name, data):
+        # A comparison with NaN does not hold either.
+        code, bound = self.code, LARGEST_ANGLE if name == 'q' else LARGEST_NUMBER
+        conditions = []
+        for index in range(self.quantity.joint_count):
+            number = self.load('double', data, 8 * index)
+            size = code.line(f'call double @llvm.fabs.f64(double {number})')
+            conditions.append(code.line(f'fcmp olt double {size}, {code.constant(bound)}'))
+        return self.all_of(conditions)
+
+    def take_kept(self, place):
+        # An answer that nobody else holds: one reference to it and to each of its arrays.
+        code, outputs = self.code, self.quantity.outputs
+        stride = 8 * (1 + len(outputs))
+        offset = 8 * _KEPT + stride * place
+        busy = self.label()
+        answer = self.load('ptr', self.context, offset)
+        self.demand(self._is_free(answer), busy)
+        for index, output in enumerate(outputs):
+            array = answer
+            if len(outputs) > 1:
+                array = self.load('ptr', self.context, offset + 8 * (1 + index))
+                self.demand(self._is_free(array), busy)
+            self.demand(self._is_plain(array, output.shape), busy)
+            code.do(f'store ptr {self.load("ptr", array, _DATA)}, ptr {self.out[index]}')
+        code.do(f'store i64 2, ptr {answer}')
+        code.do(f'store ptr {answer}, ptr {self.answer}')
+        code.do('br label %compute')
+        code.lines.append(f'{busy}:')
+
+    def _is_free(self, item):
+        return self.equal('i64', self.load('i64', item, _REFERENCES), 1)
+
+    def _is_plain(self, array, shape):
+        # Whoever had it may have changed its shape, type or flags, or still watch it.
+        flags = self.code.line(f'and i32 {self.load("i32", array, _FLAGS)}, {_OWN_PLAIN}')
+        dimensions = self.load('ptr', array, _DIMENSIONS)
+        return self.all_of(
+            [
+                self.equal('i32', flags, _OWN_PLAIN),
+                self.equal('ptr', self.load('ptr', array, _WEAK), 'null'),
+                self.equal('ptr', self.load('ptr', array, _DESCRIPTION), self.slot('float64')),
+                self.equal('i32', self.load('i32', array, _DIMENSION_COUNT), len(shape)),
+                *(
+                    self.equal('i64', self.load('i64', dimensions, 8 * axis), length)
+                    for axis, length in enumerate(shape)
+                ),
+            ]
+        )
+
+    def make_new(self):
+        code = self.code
+        array_type, new_array = self.slot('array_type'), self.slot('new_array')
+        for index, (shape, output) in enumerate(
+            zip(self.shapes, self.quantity.outputs, strict=True)
+        ):
+            for axis, length in enumerate(output.shape):
+                code.do(f'store i64 {length}, ptr {code.address(shape, axis)}')
+            array = code.line(
+                f'call ptr {new_array}(ptr {array_type}, i32 {output.ndim}, ptr {shape}, '
+                f'i32 {_FLOAT64}, ptr null, ptr null, i32 0, i32 0, ptr null)'
+            )
+            self._stop_without(array)
+            code.do(f'store ptr {self.load("ptr", array, _DATA)}, ptr {self.out[index]}')
+            self.arrays.append(array)
+        answer = self.arrays[0]
+        if len(self.arrays) > 1:
+            answer = code.line(
+                f'call ptr {self.slot("new_object")}'
+                f'(ptr {self.slot("terms_type")}, i64 {len(self.arrays)})'
+            )
+            self._stop_without(answer)
+            set_item = self.slot('set_item')
+            for index, array in enumerate(self.arrays):
+                code.line(f'call i32 {set_item}(ptr {answer}, i64 {index}, ptr {array})')
+        code.do(f'store ptr {answer}, ptr {self.answer}')
+        code.do('br label %compute')
+
+    def _stop_without(self, item):
+        # No memory: Python has set the error already.
+        code = self.code
+        failed, made = self.label(), self.label()
+        code.do(f'br i1 {self.equal("ptr", item, "null")}, label %{failed}, label %{made}')
+        code.lines.append(f'{failed}:')
+        for array in self.arrays:
+            code.do(f'call void {self.slot("release")}(ptr {array})')
+        code.do('ret ptr null')
+        code.lines.append(f'{made}:')
+
+    def compute(self):
+        code = self.code
+        code.lines.append('compute:')
+        out = [code.line(f'load ptr, ptr {slot}') for slot in self.out]
+        arguments = ', '.join(
+            f'ptr {pointer}' for pointer in [*self.data, self.slot('numbers'), *out]
+        )
+        sound = code.line(f'call i1 @{self.quantity.name}({arguments})')
+        answer = code.line(f'load ptr, ptr {self.answer}')
+        code.do(f'br i1 {sound}, label %answer, label %unsound')
+        code.lines.append('answer:')
+        code.do(f'ret ptr {answer}')
+        code.lines.append('unsound:')
+        code.do(f'call void {self.slot("release")}(ptr {answer})')
+        code.do('br label %slow')
+
+    def fall_back(self):
+        code = self.code
+        code.lines.append('slow:')
+        call, function = self.slot('call'), self.slot('fallback')
+        result = code.line(
+            f'call ptr {call}(ptr {function}, ptr %arguments, i64 %count, ptr %keywords)'
+        )
+        code.do(f'ret ptr {result}')
+
+
+DECLARATIONS = 'declare double @llvm.fabs.f64(double)'
+
+
+class _MethodDefinition(ctypes.Structure):
+    # PyMethodDef
+    _fields_ = (
+        ('name', ctypes.c_char_p),
+        ('function', ctypes.c_void_p),
+        ('flags', ctypes.c_int),
+        ('documentation', ctypes.c_char_p),
+    )
+
+
+class _Context(np.ndarray):
+    # What an entry finds behind `self`. `owned` keeps alive what the slots point to.
+
+    owned: tuple
+    evaluation: object
+
+    def __new__(cls, values):
+        context = np.array(values, dtype=np.int64).view(cls)
+        context.flags.writeable = False
+        return context
+
+    def __reduce__(self):
+        # A builtin function is pickled as what it belongs to and its name. In another process
+        # these addresses mean nothing: the fallback's owner has a method of the same name.
+        return _itself, (self.evaluation,)
+
+
+def _itself(item):
+    return item
+
+
+# Functions of Python's own library, in a table that nobody else sets argument types in.
+_API = ctypes.PyDLL(None)
+_SYMBOLS = (
+    'PyType_GenericAlloc',
+    'PyTuple_SetItem',
+    'Py_DecRef',
+    'PyObject_Vectorcall',
+    'PyCFunction_NewEx',
+    'PyCapsule_GetPointer',
+)
+
+
+def make_callable(code, name, shapes, fallback, documentation, terms_type, numbers):
+    """
+    Return a builtin function that computes a quantity of one state.
+
+    Parameters
+    ----------
+    code : LoadedCode
+        With the entry of this quantity.
+    name : str
+    shapes : sequence of tuple of int
+        Of the outputs.
+    fallback : method
+        Takes over what the entry does not take. It must not refer to the new function: Python
+        would not find that circle.
+    documentation : str or None
+        Docstring.
+    terms_type : type
+        A named tuple for the answers of more than one output.
+    numbers : numpy.ndarray
+        See `packing.pack`.
+
+    Returns
+    -------
+    builtin_function_or_method
+
+    """
+    addresses = {
+        **_addresses(),
+        'fallback': id(fallback),
+        'terms_type': id(terms_type),
+        'numbers': numbers.ctypes.data,
+    }
+    answers = [_answer(shapes, terms_type) for _ in range(_ANSWERS)]
+    kept = [
+        id(item)
+        for answer in answers
+        for item in ([answer, *answer] if len(shapes) > 1 else [answer, answer])
+    ]
+    context = _Context([*(addresses[slot] for slot in _SLOTS), *kept])
+    method = _MethodDefinition(
+        name.encode(),
+        code.address(f'{name}_call'),
+        _METHOD_FLAGS,
+        _text(name, fallback.__func__, documentation),
+    )
+    context.owned = (code, method, fallback, terms_type, answers, numbers)
+    context.evaluation = fallback.__self__
+    return _new_function()(ctypes.byref(method), context, 'dynamics_node')
+
+
+# Every change of gravity or payload makes a model: what is the same for all is made once.
+@functools.cache
+def _new_function():
+    new = _API.PyCFunction_NewEx
+    new.argtypes = [ctypes.POINTER(_MethodDefinition), ctypes.py_object, ctypes.py_object]
+    new.restype = ctypes.py_object
+    return new
+
+
+@functools.cache
+def _text(name, function, documentation):
+    signature = inspect.signature(function)
+    own = signature.replace(parameters=list(signature.parameters.values())[1:])
+    return f'{name}{own}\n--\n\n{inspect.cleandoc(documentation or "")}'.encode()
+
+
+@functools.cache
+def _addresses():
+    return {
+        'array_type': id(np.ndarray),
+        'float64': id(np.dtype(np.float64)),
+        'new_array': _numpy_function(_PYARRAY_NEW),
+        'new_object': _address(_API.PyType_GenericAlloc),
+        'set_item': _address(_API.PyTuple_SetItem),
+        'release': _address(_API.Py_DecRef),
+        'call': _address(_API.PyObject_Vectorcall),
+    }
+
+
+def _answer(shapes, terms_type):
+    arrays = [np.empty(shape) for shape in shapes]
+    return terms_type(*arrays) if len(arrays) > 1 else arrays[0]
+
+
+def _address(function):
+    return ctypes.cast(function, ctypes.c_void_p).value
+
+
+def _numpy_function(place):
+    core = getattr(np, '_core', None) or np.core
+    pointer = _API.PyCapsule_GetPointer
+    pointer.argtypes, pointer.restype = [ctypes.py_object, ctypes.c_char_p], ctypes.c_void_p
+    table = pointer(core._multiarray_umath._ARRAY_API, None)
+    return ctypes.c_void_p.from_address(table + 8 * place).value
+
+
+@functools.cache
+def is_supported():
+    """
+    Look whether objects lie in memory as the entries expect, and Python has what they call.
+
+    Returns
+    -------
+    bool
+        False on another Python than CPython, before 3.11, without the global lock, or of 32 bits.
+
+    """
+    if (
+        sys.implementation.name != 'cpython'
+        or ctypes.sizeof(ctypes.c_void_p) != 8
+        or sysconfig.get_config_var('Py_GIL_DISABLED')
+        or not all(hasattr(_API, symbol) for symbol in _SYMBOLS)
+    ):
+        return False
+    probe = np.arange(3.0)
+    at = id(probe)
+    address = functools.partial(_read, ctypes.c_void_p, at)
+    laid_out = (
+        address(_TYPE) == id(np.ndarray)
+        and address(_DATA) == probe.ctypes.data
+        and _read(ctypes.c_int64, at, _REFERENCES) == sys.getrefcount(probe) - 1
+        and _read(ctypes.c_int, at, _DIMENSION_COUNT) == 1
+        and _read(ctypes.c_int64, address(_DIMENSIONS), 0) == 3
+        and address(_DESCRIPTION) == id(np.dtype(np.float64))
+        and _read(ctypes.c_int, at, _FLAGS) & _OWN_PLAIN == _OWN_PLAIN
+        and address(_WEAK) is None
+    )
+    watcher = weakref.ref(probe)
+    return laid_out and address(_WEAK) == id(watcher)
+
+
+def _read(kind, at, offset):
+    return kind.from_address(at + offset).value

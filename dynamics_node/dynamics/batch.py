@@ -1,0 +1,365 @@
+"""Arrays in, arrays out: checks, batches, threads, and which kernel computes."""
+
+from concurrent.futures import ThreadPoolExecutor
+import math
+import operator
+import os
+
+import numpy as np
+
+from .terms import DynamicsTerms
+from ..codegen import are_ordinary
+from ..errors import ArgumentError, SingularMassMatrixError
+from ..kernels import recursive
+
+# States that one thread computes in one go: so many that the Python between two pieces, which no
+# two threads run at a time, does not count; few enough to share the work evenly. One state that
+# is not ordinary sends its piece to the general kernel.
+_PIECE = 8192
+
+_FLOAT = np.dtype(np.float64)
+
+# The arrays of an answer for one state, by the number of joints.
+SHAPES = {
+    'dynamics': lambda n: ((n, n), (n, n), (n,)),
+    'mass_matrix': lambda n: ((n, n),),
+    'coriolis_matrix': lambda n: ((n, n),),
+    'gravity_torque': lambda n: ((n,),),
+    'inverse_dynamics': lambda n: ((n,),),
+    'forward_dynamics': lambda n: ((n,),),
+}
+
+
+class Evaluation:
+    """
+    The dynamics of one robot under one gravity, for checked arrays.
+
+    Attributes
+    ----------
+    packed : tuple of numpy.ndarray
+        See `kernels.packing.pack`.
+    specialisation : Specialisation
+        Machine code for this robot, if there is any; with a payload or rotors, that for any
+        inertia.
+
+    """
+
+    def __init__(self, packed, joint_names, specialisation):
+        """
+        Belong to a robot.
+
+        Parameters
+        ----------
+        packed : tuple of numpy.ndarray
+            See `kernels.packing.pack`.
+        joint_names : tuple of str
+            Of the n joints.
+        specialisation : Specialisation
+
+        """
+        self.packed = packed
+        self.specialisation = specialisation
+        self._joint_names = joint_names
+        self._n = len(joint_names)
+        self._state_shape = (self._n,)
+        self._shapes = {name: shapes(self._n) for name, shapes in SHAPES.items()}
+        self._one_shapes = {
+            name: tuple((1, *shape) for shape in shapes) for name, shapes in self._shapes.items()
+        }
+
+    def __reduce__(self):
+        return type(self), (self.packed, self._joint_names, self.specialisation)
+
+    def states(self, **values):
+        """
+        Check and broadcast arrays of joint values.
+
+        Parameters
+        ----------
+        **values : array_like, shape (..., n)
+
+        Returns
+        -------
+        lead : tuple of int
+            The batch axes.
+        arrays : list of numpy.ndarray, shape (B, n)
+            Contiguous, float64, B the product of the batch axes.
+
+        Raises
+        ------
+        ArgumentError
+            If a last axis is not n or batch axes do not fit.
+
+        """
+        arrays = [_plain(value) for value in values.values()]
+        shape = arrays[0].shape
+        if len(shape) == 1 and all(array.shape == self._state_shape for array in arrays):
+            return (), [array[None] for array in arrays]
+        if any(array.shape != shape for array in arrays) or shape[-1:] != (self._n,):
+            arrays = self._fitted(values, arrays)
+            shape = arrays[0].shape
+        count = math.prod(shape[:-1])
+        return shape[:-1], [array.reshape(count, self._n) for array in arrays]
+
+    def _fitted(self, names, arrays):
+        for name, array in zip(names, arrays, strict=True):
+            if array.shape[-1:] != (self._n,):
+                raise ArgumentError(
+                    f'{name}: expected shape (..., {self._n}) for joints '
+                    f'{list(self._joint_names)}, got {array.shape}'
+                )
+        return _broadcast(names, arrays)
+
+    def dynamics(self, q, qd, *, out=None, threads=None):
+        """Return D, C and G, each with the batch axes of q and qd first."""
+        if out is None and threads is None and self._is_state(q) and self._is_state(qd):
+            return DynamicsTerms(*self._run_one('dynamics', q, qd))
+        lead, arrays = self.states(q=q, qd=qd)
+        return DynamicsTerms(*self._run('dynamics', lead, arrays, out, threads))
+
+    def coriolis_matrix(self, q, qd, *, threads=None):
+        """Return C with the batch axes of q and qd first."""
+        return self.dynamics(q, qd, threads=threads).coriolis_matrix
+
+    def mass_matrix(self, q, *, out=None, threads=None):
+        """Return D with the batch axes of q first."""
+        if out is None and threads is None and self._is_state(q):
+            return self._run_one('mass_matrix', q)[0]
+        lead, arrays = self.states(q=q)
+        return self._run('mass_matrix', lead, arrays, _one(out), threads)[0]
+
+    def gravity_torque(self, q, *, out=None, threads=None):
+        """Return G with the batch axes of q first."""
+        if out is None and threads is None and self._is_state(q):
+            return self._gravity_of_one(q)
+        lead, arrays = self.states(q=q)
+        return self._run('gravity_torque', lead, arrays, _one(out), threads)[0]
+
+    def inverse_dynamics(self, q, qd, qdd, *, out=None, threads=None):
+        """Return the efforts of a motion with the batch axes of its arguments first."""
+        lead, arrays = self.states(q=q, qd=qd, qdd=qdd)
+        return self._run('inverse_dynamics', lead, arrays, _one(out), threads)[0]
+
+    def forward_dynamics(self, q, qd, tau, *, threads=None):
+        """Return the accelerations that efforts cause, by a Cholesky factorisation of D."""
+        lead, [q, qd, tau] = self.states(q=q, qd=qd, tau=tau)
+        qdd, sound = np.empty_like(q), np.empty(len(q), dtype=bool)
+        if self.specialisation.code is None:
+            self.specialisation.count(len(q))
+        _in_pieces(
+            lambda arrays, outputs: recursive.forward_dynamics(*self.packed, *arrays, *outputs),
+            [q, qd, tau],
+            [qdd, sound],
+            len(q),
+            threads,
+        )
+        if not sound.all():
+            raise SingularMassMatrixError(
+                'the mass matrix is not positive definite, expected inertia behind every joint: '
+                'check the <inertial> of the moving links'
+            )
+        return qdd.reshape(*lead, self._n)
+
+    def kinetic_energy(self, q, qd):
+        """Return T with the batch axes of q and qd."""
+        lead, [q, qd] = self.states(q=q, qd=qd)
+        return 0.5 * np.einsum('bi,bij,bj->b', qd, self.mass_matrix(q), qd).reshape(lead)
+
+    def potential_energy(self, q):
+        """Return V with the batch axes of q."""
+        lead, [q] = self.states(q=q)
+        G, V = np.empty((len(q), self._n)), np.empty(len(q))
+        recursive.gravity_torque(*self.packed, q, G, V)
+        return V.reshape(lead)
+
+    def jacobian(self, q, frame, point):
+        """Return the Jacobian of a point of a link (a `LinkFrame`), the batch axes of q first."""
+        lead, [q] = self.states(q=q)
+        J = np.zeros((len(q), 6, self._n))
+        if np.shape(point) != (3,):
+            raise ArgumentError(f'point: expected three numbers, m, got {point!r}')
+        if frame.body >= 0:
+            inside = frame.placement[:3, :3] @ _plain(point) + frame.placement[:3, 3]
+            recursive.jacobian(*self.packed, q, frame.body, inside, J)
+        return J.reshape(*lead, 6, self._n)
+
+    def body_poses(self, q):
+        """Return the transforms of all N bodies to the base, the batch axes of q first."""
+        lead, [q] = self.states(q=q)
+        poses = self._body_poses(q, np.arange(len(self.packed[0])))
+        return poses.reshape(*lead, *poses.shape[1:])
+
+    def _body_poses(self, q, bodies):
+        poses = np.zeros((len(q), len(bodies), 4, 4))
+        upper = np.empty((len(q), len(bodies), 3, 4))
+        recursive.body_poses(*self.packed, q, bodies, upper)
+        poses[:, :, :3], poses[:, :, 3, 3] = upper, 1.0
+        return poses
+
+    def link_pose(self, q, frame):
+        """Return the transform from a link (a `LinkFrame`) to the base, the batch axes first."""
+        lead, [q] = self.states(q=q)
+        pose = np.empty((len(q), 4, 4))
+        if frame.body >= 0:
+            pose = self._body_poses(q, np.array([frame.body]))[:, 0] @ frame.placement
+        else:
+            pose[:] = frame.placement
+        return pose.reshape(*lead, 4, 4)
+
+    def _run(self, name, lead, arrays, out, threads):
+        count, shapes = len(arrays[0]), self._shapes[name]
+        if out is None:
+            outputs = [np.empty((count, *shape)) for shape in shapes]
+        else:
+            _check_out(out, [(*lead, *shape) for shape in shapes], arrays)
+            outputs = [
+                array.reshape(count, *shape) for array, shape in zip(out, shapes, strict=True)
+            ]
+        code = self.specialisation.code
+        if code is None:
+            self.specialisation.count(count)
+        _in_pieces(
+            lambda arrays, outputs: self._compute(code, name, arrays, outputs),
+            arrays,
+            outputs,
+            count,
+            threads,
+        )
+        if out is not None:
+            return out
+        if not lead:
+            return [output[0] for output in outputs]
+        return [
+            output.reshape(*lead, *shape) for output, shape in zip(outputs, shapes, strict=True)
+        ]
+
+    def _is_state(self, array):
+        return (
+            type(array) is np.ndarray
+            and array.shape == self._state_shape
+            and array.dtype is _FLOAT
+            and array.flags.carray
+        )
+
+    # One state, as a control loop has it, straight to the kernel: the Python around it would
+    # take longer than the formulas. Machine code for one state stands in for the method.
+
+    def _gravity_of_one(self, q):
+        if self.specialisation.code is None:
+            self.specialisation.count(1)
+        G = np.empty(self._n)
+        recursive.gravity_torque_of_one(*self.packed, q, G)
+        return G
+
+    def _run_one(self, name, *state):
+        if self.specialisation.code is None:
+            self.specialisation.count(1)
+        outputs = [np.empty(shape) for shape in self._one_shapes[name]]
+        _KERNELS[name](*self.packed, *[array[None] for array in state], *outputs)
+        return [output[0] for output in outputs]
+
+    def _compute(self, code, name, arrays, outputs):
+        if code is not None and len(arrays[0]) >= code.lanes and are_ordinary(name, arrays):
+            code.batch(name, self.packed[1], arrays, outputs)
+        else:
+            _KERNELS[name](*self.packed, *arrays, *outputs)
+
+
+def _gravity_torque(structure, numbers, q, G):
+    recursive.gravity_torque(structure, numbers, q, G, np.empty(len(q)))
+
+
+_KERNELS = {
+    'dynamics': recursive.dynamics,
+    'mass_matrix': recursive.mass_matrix,
+    'gravity_torque': _gravity_torque,
+    'inverse_dynamics': recursive.inverse_dynamics,
+}
+
+
+def _in_pieces(compute, arrays, outputs, count, threads):
+    # compute(rows of the arrays, rows of the outputs) in pieces of about equal size.
+    pieces = math.ceil(count / _PIECE)
+    if threads is not None:
+        threads = _checked_threads(threads)
+    if pieces <= 1:
+        compute(arrays, outputs)
+        return
+    if threads is None:
+        threads = len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else 1
+
+    def piece(i):
+        rows = slice(count * i // pieces, count * (i + 1) // pieces)
+        compute([array[rows] for array in arrays], [output[rows] for output in outputs])
+
+    remaining = iter(range(pieces))
+
+    def work():
+        for i in remaining:
+            piece(i)
+
+    helpers = min(threads, pieces) - 1
+    if helpers == 0:
+        work()
+        return
+    with ThreadPoolExecutor(helpers) as pool:
+        others = [pool.submit(work) for _ in range(helpers)]
+        work()
+        for other in others:
+            other.result()
+
+
+def _checked_threads(threads):
+    try:
+        threads = operator.index(threads)
+    except TypeError:
+        threads = 0
+    if threads < 1:
+        raise ArgumentError(
+            'threads: expected an integer of at least 1, or None for as many as '
+            'this process may use'
+        )
+    return threads
+
+
+def _one(out):
+    return None if out is None else (out,)
+
+
+def _check_out(arrays, shapes, inputs):
+    if len(arrays) != len(shapes):
+        raise ArgumentError(f'out: expected {len(shapes)} arrays, got {len(arrays)}')
+    for array in arrays:
+        if not (type(array) is np.ndarray and array.dtype == _FLOAT and array.flags.carray):
+            raise ArgumentError(
+                'out: expected writeable, contiguous float64 arrays, got '
+                f'{type(array).__name__}; take what an earlier call has returned'
+            )
+    if [array.shape for array in arrays] != shapes:
+        raise ArgumentError(
+            f'out: expected shapes {shapes}, got {[array.shape for array in arrays]}'
+        )
+    for i, array in enumerate(arrays):
+        if any(np.may_share_memory(array, other) for other in (*inputs, *arrays[:i])):
+            raise ArgumentError(
+                'out: expected arrays of their own, got memory that an argument '
+                'or another one of them uses too'
+            )
+
+
+def _plain(value):
+    # numba compiles read-only or strided arrays as a type of their own, and nobody should wait
+    # for the compiler in the middle of a control loop. So all but plain ones are copied.
+    if type(value) is np.ndarray and value.dtype is _FLOAT and value.flags.carray:
+        return value
+    return np.array(value, dtype=float, order='C')
+
+
+def _broadcast(names, arrays):
+    try:
+        return [np.array(array, order='C') for array in np.broadcast_arrays(*arrays)]
+    except ValueError as error:
+        shapes = ', '.join(
+            f'{name} {array.shape}' for name, array in zip(names, arrays, strict=True)
+        )
+        raise ArgumentError(f'expected batch axes that fit, got {shapes}') from error

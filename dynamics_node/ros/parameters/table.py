@@ -1,0 +1,295 @@
+"""
+Every parameter of the node, in one table.
+
+Declaration, validation, config/dynamics.yaml and docs/reference.md follow from it; tests hold them
+together. A parameter that is not in here does not exist.
+
+"""
+
+import math
+
+from .declaration import DOUBLE, DOUBLES, FLAG, Parameter, ParameterError, TEXT, TEXTS
+from ...dynamics.friction import SMOOTHING_VELOCITY
+from ...safety.effort_output import STOP_BEHAVIORS
+
+MAX_GRAVITY = 20.0
+
+PARAMETERS = (
+    Parameter(
+        'joints',
+        TEXTS,
+        (),
+        'Joint names: rows of every answer and order of the '
+        'command. Empty: all movable joints in the order of the URDF',
+        read_only=True,
+    ),
+    Parameter(
+        'robot_description',
+        TEXT,
+        '',
+        'URDF text. Empty: the file, or the topic robot_description',
+        read_only=True,
+    ),
+    Parameter(
+        'robot_description_file',
+        TEXT,
+        '',
+        'Path of a URDF. Empty: the topic robot_description',
+        read_only=True,
+    ),
+    Parameter(
+        'gravity',
+        DOUBLES,
+        (0.0, 0.0, -9.81),
+        'Gravity acceleration in the frame of the root link, m/s², points down',
+        length=3,
+        low=-MAX_GRAVITY,
+        high=MAX_GRAVITY,
+    ),
+    Parameter(
+        'machine_code',
+        FLAG,
+        False,
+        'Compile machine code for the robot in another process '
+        'at start: some microseconds less per state. By default no compiler runs beside an '
+        'arm',
+        read_only=True,
+    ),
+    Parameter(
+        'command_topic',
+        TEXT,
+        'forward_effort_controller/commands',
+        'Where the efforts go while output is enabled',
+        read_only=True,
+    ),
+    Parameter(
+        'enable_on_start',
+        FLAG,
+        False,
+        'Enable the output as soon as it is possible. '
+        'Many arms compensate gravity below the effort interface: leave it off there',
+        read_only=True,
+    ),
+    Parameter('publish_dynamics', FLAG, True, 'Publish ~/dynamics while somebody listens'),
+    Parameter(
+        'publish_external_torque',
+        FLAG,
+        False,
+        'Publish ~/external_torque. Needs '
+        'velocities and efforts in joint_states, and efforts that are torques',
+    ),
+    Parameter(
+        'external_torque.gain',
+        DOUBLE,
+        100.0,
+        'Of the momentum observer, 1/s: 95 % of a '
+        'step are there after 3 / gain. Larger is faster and noisier',
+        low=0.0,
+        low_open=True,
+        high=10_000.0,
+    ),
+    Parameter(
+        'state_timeout',
+        DOUBLE,
+        0.2,
+        'Largest age of a joint state, s, on the steady clock',
+        low=0.0,
+        low_open=True,
+        high=10.0,
+    ),
+    Parameter(
+        'allow_several_state_publishers',
+        FLAG,
+        False,
+        'Enable although joint_states has '
+        'several publishers: where arm and gripper have a broadcaster each. No state of one '
+        'then takes the place of one of the other in the queue',
+        read_only=True,
+    ),
+    Parameter(
+        'allow_self_compensating_arm',
+        FLAG,
+        False,
+        'Enable although the ros2_control '
+        'hardware plugin in the URDF drives an arm that compensates gravity itself: a '
+        'second gravity torque pushes such an arm up (docs/arms.md)',
+    ),
+    Parameter(
+        'allow_upward_gravity',
+        FLAG,
+        False,
+        'Enable although gravity points up in the '
+        'frame of the root link: for an arm that hangs from a ceiling',
+    ),
+    Parameter(
+        'allow_limits_above_urdf',
+        FLAG,
+        False,
+        'Enable although effort_limits or velocity_limits are above those of the URDF',
+    ),
+    Parameter(
+        'start_ramp',
+        DOUBLE,
+        0.5,
+        'Time from zero to the full effort, s. A change of '
+        'payload, gravity, terms, gains or limits while efforts are sent takes as long',
+        low=0.0,
+        high=60.0,
+    ),
+    Parameter(
+        'stop_ramp', DOUBLE, 1.0, 'Time from the last effort to zero, s', low=0.0, high=60.0
+    ),
+    Parameter(
+        'stop_behavior',
+        TEXT,
+        'ramp_to_zero',
+        'How the output stops: ramp_to_zero, zero '
+        '(as fast as the rate limits allow, at most 1 s) or hold (when joint states end, '
+        'the last effort stays in force; every other stop ramps to zero)',
+        choices=STOP_BEHAVIORS,
+    ),
+    Parameter(
+        'effort_limits',
+        DOUBLES,
+        (),
+        'Largest effort per joint, N m or N, in the order '
+        'of joints. Empty: those of the URDF; a joint without a limit refuses to be enabled',
+        low=0.0,
+        low_open=True,
+    ),
+    Parameter(
+        'effort_rate_limits',
+        DOUBLES,
+        (),
+        'Largest change of effort per joint, N m/s or N/s. Empty: the effort limit per 0.1 s',
+        low=0.0,
+        low_open=True,
+    ),
+    Parameter(
+        'velocity_limits',
+        DOUBLES,
+        (),
+        'Speed per joint above which the output stops '
+        '(runaway), rad/s or m/s, in the order of joints. Empty: those of the URDF',
+        low=0.0,
+        low_open=True,
+    ),
+    Parameter(
+        'effort_scale',
+        DOUBLES,
+        (),
+        'Gain on the model effort per joint. Empty: 1',
+        low=0.0,
+        high=10.0,
+    ),
+    Parameter(
+        'compensate.gravity', FLAG, True, 'Whether the gravity torque G is part of the command'
+    ),
+    Parameter('compensate.coriolis', FLAG, False, 'Whether C qd is part of the command'),
+    Parameter(
+        'compensate.friction',
+        FLAG,
+        False,
+        'Whether friction is part of the command. '
+        'Begin with less than the arm has: it is positive feedback',
+    ),
+    Parameter(
+        'friction.viscous',
+        DOUBLES,
+        (),
+        'Viscous friction per joint, N m s/rad or N s/m, '
+        'in the order of joints. Empty: <dynamics damping> of the URDF',
+        low=0.0,
+        high=1e6,
+    ),
+    Parameter(
+        'friction.coulomb',
+        DOUBLES,
+        (),
+        'Dry friction per joint, N m or N. Empty: <dynamics friction> of the URDF',
+        low=0.0,
+        high=1e6,
+    ),
+    Parameter(
+        'friction.smoothing_velocity',
+        DOUBLES,
+        (),
+        'Speed at which dry friction has 76 % '
+        'of its size, rad/s or m/s: one number, or one per joint. Empty: '
+        f'{SMOOTHING_VELOCITY:g}. Friction is viscous qd + coulomb tanh(qd / smoothing)',
+        low=0.0,
+        low_open=True,
+        takes_one=True,
+    ),
+    Parameter(
+        'rotor_inertia',
+        DOUBLES,
+        (),
+        'Inertia of the rotors as the joints feel it, with '
+        'the square of the gear ratio, kg m² or kg, per joint. Empty: 0',
+        low=0.0,
+        high=1e6,
+    ),
+    Parameter('payload.link', TEXT, '', 'Link that carries the payload'),
+    Parameter(
+        'payload.mass', DOUBLE, 0.0, 'Mass of the payload, kg; 0: there is none', low=0.0, high=1e5
+    ),
+    Parameter(
+        'payload.com',
+        DOUBLES,
+        (0.0, 0.0, 0.0),
+        'Centre of mass of the payload in the frame of its link, m',
+        length=3,
+        low=-1000.0,
+        high=1000.0,
+    ),
+    Parameter(
+        'payload.inertia',
+        DOUBLES,
+        (0.0,) * 6,
+        'Inertia tensor of the payload about its '
+        'centre of mass along the axes of its link, kg m²: ixx, ixy, ixz, iyy, iyz, izz',
+        length=6,
+    ),
+)
+
+
+def check_all(values):
+    """
+    Check values of parameters, and what holds between them.
+
+    Parameters
+    ----------
+    values : dict of str to Any
+        Name → value as ROS delivers it; names that are missing keep their defaults.
+
+    Returns
+    -------
+    dict of str to Any
+        All parameters, each in its kind.
+
+    Raises
+    ------
+    ParameterError
+        With every problem, one sentence each.
+
+    """
+    checked, problems = {}, []
+    for parameter in PARAMETERS:
+        try:
+            checked[parameter.name] = parameter.check(
+                values.get(parameter.name, parameter.default)
+            )
+        except ParameterError as error:
+            problems.append(str(error))
+    size = math.sqrt(sum(item * item for item in checked.get('gravity', ())))
+    if size > MAX_GRAVITY:
+        problems.append(f'gravity: expected at most {MAX_GRAVITY:g} m/s^2, got {size:.6g}')
+    if checked.get('payload.mass') and not checked.get('payload.link', 'unknown'):
+        problems.append(
+            'payload.link: expected the link that carries payload.mass, got none; '
+            'set payload.link first'
+        )
+    if problems:
+        raise ParameterError('; '.join(problems))
+    return checked

@@ -1,0 +1,164 @@
+"""The services that say what the robot carries and where the earth is."""
+
+import time
+
+from dynamics_interfaces.srv import SetGravity, SetPayload
+import numpy as np
+
+from .base import Answering
+from ..parameters.table import ParameterError
+from ..support.callback_errors import guarded_service
+from ...dynamics.arguments import check_link
+from ...errors import ArgumentError
+
+_TENSOR = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
+# Parameters of which a refusal speaks, and the request's fields that they were set from.
+_FIELDS = {
+    'payload.link': 'link',
+    'payload.mass': 'inertia.m',
+    'payload.com': 'inertia.com',
+    'payload.inertia': 'inertia.ixx to izz',
+    'payload com': 'inertia.com',
+    'payload inertia': 'inertia.ixx to izz',
+}
+# Anywhere on the surface of the earth gravity is between these, m/s².
+_LEAST, _MOST = 9.76, 9.84
+
+
+class SettingServices(Answering):
+    """
+    Creates and answers ~/set_payload and ~/set_gravity.
+
+    They set parameters, so that what is in force can be read there, and is checked in one place.
+
+    """
+
+    def __init__(self, node, get_robot, parameters):
+        """Create the services of a node; see `Answering`."""
+        super().__init__(node, get_robot, parameters)
+        self.serve(SetPayload, 'set_payload', self.set_payload)
+        self.serve(SetGravity, 'set_gravity', self.set_gravity)
+
+    @guarded_service
+    def set_payload(self, request, response):
+        """Put a payload in place of the one before; answer the one in force."""
+
+        def fill():
+            robot, inertia = self.robot(), request.inertia
+            com = (inertia.com.x, inertia.com.y, inertia.com.z)
+            six = tuple(getattr(inertia, name) for name in _TENSOR)
+            link, mass = request.link, inertia.m
+            if mass == 0.0:
+                link, com, six = '', (0.0,) * 3, (0.0,) * 6
+            elif not link:
+                raise ArgumentError(
+                    'link: expected the one that carries the payload, got none: '
+                    f'one of {", ".join(robot.model.link_names)}'
+                )
+            else:
+                check_link(robot.model.tree.links, link)
+            try:
+                self.parameters.set(
+                    {
+                        'payload.link': link,
+                        'payload.mass': mass,
+                        'payload.com': com,
+                        'payload.inertia': six,
+                    }
+                )
+            except ParameterError as error:
+                raise ParameterError(_with_fields(str(error))) from error
+            over = robot.over_limits(self.parameters.values)
+            if not mass:
+                return 'nothing is carried'
+            if robot.model.tree.links[link].body < 0:
+                return f'{mass:g} kg on {link}, which no joint moves: without any effect'
+            return f'{mass:g} kg on {link}' + (
+                f', but gravity torque is above its limit: {over}' if over else ''
+            )
+
+        return self._with_payload(self.answer(response, fill))
+
+    @guarded_service
+    def set_gravity(self, request, response):
+        """Take another direction of gravity; answer the one in force."""
+
+        def fill():
+            robot, frame = self.robot(), request.gravity.header.frame_id
+            vector = request.gravity.vector
+            gravity = np.array([vector.x, vector.y, vector.z])
+            if not np.isfinite(gravity).all():
+                raise ArgumentError(f'gravity: expected finite numbers, got {gravity.tolist()}')
+            if not gravity.any():
+                raise ArgumentError(
+                    'gravity: expected a vector that points to the earth, got '
+                    'zero; for none at all set the parameter gravity'
+                )
+            if frame not in ('', robot.model.tree.root):
+                gravity = self._turned(robot, frame, gravity)
+            self.parameters.set({'gravity': tuple(gravity.tolist())})
+            size = float(np.linalg.norm(gravity))
+            return f'gravity is {size:.6g} m/s^2 along this vector' + (
+                ''
+                if _LEAST <= size <= _MOST
+                else ', which is not that of the earth: its length counts too'
+            )
+
+        return self._with_gravity(self.answer(response, fill))
+
+    def failed(self, response, message):
+        """Make a new response the answer to a request that failed: with what is in force."""
+        response = super().failed(response, message)
+        if isinstance(response, SetPayload.Response):
+            return self._with_payload(response)
+        return self._with_gravity(response)
+
+    def _turned(self, robot, frame, vector):
+        check_link(robot.model.tree.links, frame, 'header.frame_id')
+        timeout = self.parameters['state_timeout']
+        # Every joint that turns it, also those that are not in `joints`, and no other.
+        if stale := robot.buffer.stale_joints(
+            time.monotonic(), timeout, _joints_to(robot.model.tree, frame)
+        ):
+            raise ArgumentError(
+                f'header.frame_id: how {frame} is turned is not known: no joint '
+                f'state within {timeout:g} s for {", ".join(stale)}; publish '
+                'joint_states, or give gravity in the frame of the root link'
+            )
+        return robot.model.link_pose(robot.buffer.position, frame)[:3, :3] @ vector
+
+    def _with_payload(self, response):
+        robot = self._get_robot()
+        payload = robot.model.payload if robot else None
+        if payload is not None:
+            response.link, response.inertia.m = payload.link, payload.mass
+            com = response.inertia.com
+            com.x, com.y, com.z = payload.com.tolist()
+            for name, value in zip(
+                _TENSOR, payload.inertia[np.triu_indices(3)].tolist(), strict=True
+            ):
+                setattr(response.inertia, name, value)
+        return response
+
+    def _with_gravity(self, response):
+        robot = self._get_robot()
+        if robot is not None:
+            stamped = response.gravity
+            stamped.header.frame_id = robot.model.tree.root
+            stamped.vector.x, stamped.vector.y, stamped.vector.z = robot.model.gravity.tolist()
+        return response
+
+
+def _joints_to(tree, link):
+    # Places of the joints between the base and a link, each once.
+    body, joints = tree.links[link].body, set()
+    while body >= 0:
+        joints.add(int(tree.coordinate[body]))
+        body = tree.parent[body]
+    return sorted(joints)
+
+
+def _with_fields(text):
+    for parameter, field in _FIELDS.items():
+        text = text.replace(parameter, field)
+    return text

@@ -1,0 +1,188 @@
+"""The command topic: publishes what the torque path returns, ticks it, and tells its state."""
+
+import math
+import time
+
+from dynamics_interfaces.msg import OutputState as OutputStateMessage
+from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
+from std_msgs.msg import Float64MultiArray
+
+from ..support.callback_errors import guarded, logged
+from ..support.callback_groups import TorqueGroup
+from ..support.messages import to_field
+from ..support.qos import COMMAND, NO_EVENTS, OUTPUT_STATE
+from ..support.throttling import Throttle
+from ...safety import OutputSettings, OutputState, TorquePath
+from ...safety.effort_output import STOP_PERIOD
+
+# The subscriptions of the command topic are counted this often, s.
+COUNT_EVERY = 0.02
+# Longest time between two ticks, s.
+IDLE_TICK = 0.25
+# The same state is logged at most this often, s; ~/state has every change.
+LOG_EVERY = 0.5
+
+
+class CommandOutput:
+    """
+    Connects a `TorquePath` to ROS.
+
+    Attributes
+    ----------
+    path : TorquePath
+    commands : int
+        Commands published so far.
+    publisher : rclpy.publisher.Publisher
+        Of the command topic.
+
+    """
+
+    def __init__(self, node, parameters, on_change, on_tick=lambda: None):
+        """
+        Create publishers and watchdog; the output is off.
+
+        Parameters
+        ----------
+        node : rclpy.node.Node
+        parameters : Parameters
+        on_change : callable()
+            Called after every change of the output's state.
+        on_tick : callable()
+            Called at every tick, and at the latest every IDLE_TICK, whatever the state.
+
+        """
+        self.logger = node.get_logger()
+        self._node = node
+        self._on_change, self._on_tick = on_change, on_tick
+        self.commands = self._listeners = 0
+        self._count_due = Throttle(COUNT_EVERY)
+        self._message = Float64MultiArray()
+        self._saturated = Throttle(1.0)
+        self._state_log = {state: Throttle(LOG_EVERY) for state in OutputState}
+        self.publisher = node.create_publisher(
+            Float64MultiArray, parameters['command_topic'], COMMAND, event_callbacks=NO_EVENTS
+        )
+        self._state_publisher = node.create_publisher(
+            OutputStateMessage, '~/state', OUTPUT_STATE, event_callbacks=NO_EVENTS
+        )
+        self.path = TorquePath(output_settings(parameters), self._changed)
+        # On the steady clock: it must watch while simulation time stands still. The only timer of
+        # the node, because each of them costs time in every wait of the executor.
+        self._watchdog = node.create_timer(
+            IDLE_TICK,
+            self._ticked,
+            clock=Clock(clock_type=ClockType.STEADY_TIME),
+            callback_group=TorqueGroup(),
+        )
+
+    @property
+    def topic(self):
+        """Resolved name of the command topic."""
+        return self.publisher.topic_name
+
+    def has_listener(self):
+        """Whether the command topic has a subscription."""
+        return self.publisher.get_subscription_count() > 0
+
+    def has_new_listener(self):
+        """Whether subscriptions were added since the last count, at most every COUNT_EVERY."""
+        if not self._count_due.is_due():
+            return False
+        before, self._listeners = self._listeners, self.publisher.get_subscription_count()
+        return self._listeners > before
+
+    def publish(self, command):
+        """Send a command that the torque path has just returned, unless it is too late for it."""
+        if not self.path.is_timely(time.monotonic()):
+            return
+        self._message.data = to_field(command)
+        self.publisher.publish(self._message)
+        self.path.published(time.monotonic())
+        self.commands += 1
+        if self.path.output.limiter.is_saturated and self._saturated.is_due():
+            self.logger.warning(f'effort above its limit: {self.path.output.limiter.saturation()}')
+
+    def announce(self):
+        """Publish the state that the output starts in: READY means that there is a model."""
+        machine = self.path.output.machine
+        self._changed(machine.state, machine.reason)
+
+    def configured(self):
+        """Look at the state sooner, because its timeout may have become shorter."""
+        if self.path.is_on:
+            self._tick_within(STOP_PERIOD)
+
+    def enable(self):
+        """Begin to send efforts; return False if the process is about to end."""
+        return self.path.enable(time.monotonic())
+
+    def fault(self, reason):
+        """Stop an output that is on, because the arm must not be driven any further."""
+        self.path.fault(time.monotonic(), reason)
+
+    def on_internal_error(self, message):
+        """Stop after an exception in a callback of the torque path."""
+        self.path.fail(time.monotonic(), message)
+
+    def tick(self):
+        """Watch the age of the joint state; send the next command of a ramp or a stop."""
+        command = self.path.tick(time.monotonic())
+        if command is not None:
+            self.publish(command)
+
+    def flush(self, timeout):
+        """Wait until every listener has the last command, at most `timeout` seconds."""
+        self.publisher.wait_for_all_acked(Duration(seconds=timeout))
+
+    @guarded
+    def _ticked(self):
+        try:
+            if self.path.is_on:
+                self.tick()
+        finally:
+            due = self.path.next_tick_in(time.monotonic()) if self.path.is_on else IDLE_TICK
+            self._tick_in(min(due, IDLE_TICK))
+        self._on_tick()
+
+    def _tick_within(self, seconds):
+        # Never later than was planned: what comes again and again, like a flood of parameters,
+        # would otherwise put the tick off for ever.
+        planned = self._watchdog.time_until_next_call()
+        if planned is None or planned > seconds * 1e9:
+            self._tick_in(seconds)
+
+    def _tick_in(self, seconds):
+        # Only when a state can have become stale, or a ramp goes on: a timer that runs at a
+        # fixed rate instead costs as much as a stream of joint states of that rate.
+        self._watchdog.timer_period_ns = math.ceil(seconds * 1e9)
+        self._watchdog.reset()
+
+    @logged
+    def _changed(self, state, reason):
+        if self.path.is_on:
+            self._tick_within(STOP_PERIOD)
+        message = OutputStateMessage(state=int(state), name=state.name, reason=reason)
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._state_publisher.publish(message)
+        self._log(state, reason)
+        self._on_change()
+
+    def _log(self, state, reason):
+        if not self._state_log[state].is_due():
+            return
+        # Two lines, because rclpy ties the severity to the line that logs.
+        if state == OutputState.FAULT:
+            self.logger.error(f'output FAULT: {reason}; ~/enable tries again')
+        else:
+            self.logger.info(f'output {state.name}: {reason}')
+
+
+def output_settings(parameters):
+    """Return the `OutputSettings` that the parameters say."""
+    return OutputSettings(
+        **{
+            name: parameters[name]
+            for name in ('state_timeout', 'start_ramp', 'stop_ramp', 'stop_behavior')
+        }
+    )

@@ -1,0 +1,99 @@
+"""The checks that go on while efforts are sent: other publishers, and the controllers."""
+
+import time
+
+from ..support.callback_errors import logged
+
+# How often the controllers' lifecycle is followed while the output is off, s.
+IDLE_EVERY = 1.0
+
+
+class Protection:
+    """
+    Stops the output when another source of efforts appears or a controller does not fit.
+
+    A check that fails is noticed by the torque path, which stops when the last check that passed
+    is too long ago.
+
+    """
+
+    def __init__(self, node, output, monitor, controllers, get_robot):
+        """
+        Create the checks; `check` runs them.
+
+        Parameters
+        ----------
+        node : rclpy.node.Node
+        output : CommandOutput
+        monitor : PublisherMonitor
+        controllers : Controllers
+        get_robot : callable() -> Robot or None
+
+        """
+        self.logger = node.get_logger()
+        self._output = output
+        self._path = output.path
+        self._monitor = monitor
+        self._controllers = controllers
+        self._get_robot = get_robot
+        self._had_listener = True
+        self._was_driving = False
+        self._next_idle = 0.0
+
+    @logged
+    def check(self):
+        """Look for other publishers and at the controllers; called every 0.2 s."""
+        now = time.monotonic()
+        if self._path.is_driving:
+            self._check_driven(now)
+        else:
+            self._was_driving = False
+            if self._path.is_on or now >= self._next_idle:
+                self._next_idle = now + IDLE_EVERY
+                self._follow_controllers(now)
+
+    def _check_driven(self, now):
+        if not self._was_driving:
+            self._was_driving, self._had_listener = True, self._controllers.has_listener()
+        conflicts = self._monitor.conflicts()
+        if conflicts:
+            self._path.fault(now, '; '.join(conflicts))
+            return
+        self._follow_controllers(now)
+        has_listener = self._controllers.has_listener()
+        new = self._controllers.renewed
+        if has_listener and not self._had_listener:
+            new = sorted(self._controllers.listeners) or ['a listener']
+        if self._path.is_driving and new:
+            # It has missed the start ramp and would get the whole effort at once.
+            self._path.restart_from_zero(
+                time.monotonic(), f'{", ".join(new)} has begun to listen to the commands'
+            )
+        self._had_listener = has_listener
+        self._path.monitored(time.monotonic())
+
+    def _follow_controllers(self, now):
+        lost = self._controllers.update()
+        if not self._path.is_on:
+            return
+        inactive = [
+            reason for item in self._controllers.listeners.values() for reason in item.inactive()
+        ]
+        gone = [f'{name} no longer listens to the commands' for name in lost]
+        if inactive or gone:
+            self._lose(now, '; '.join(inactive + gone))
+            return
+        mismatches = self._controllers.refusals(self._get_robot().joint_names)
+        if mismatches:
+            self._path.fault(now, '; '.join(mismatches))
+
+    def _lose(self, now, reason):
+        # Another controller gets the whole stop: it would keep the last effort.
+        if not self._controllers.takes_commands():
+            self._path.lose_controller(now, reason)
+        elif self._path.is_driving:
+            self._path.fault(
+                now,
+                f'{reason}; its hardware may hold the last efforts: '
+                + self._path.output.limiter.describe_last(),
+            )

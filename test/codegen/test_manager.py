@@ -1,0 +1,551 @@
+"""Machine code takes over without anybody waiting, and can be done without."""
+
+from concurrent.futures import ThreadPoolExecutor
+import copy
+import gc
+import inspect
+import os
+import pickle
+import resource
+import shutil
+import subprocess
+import sys
+import threading
+import time
+import weakref
+
+from dynamics_node import codegen, RobotModel, SingularMassMatrixError
+from dynamics_node.codegen import compile, worker
+from dynamics_node.codegen.manager import Specialisation
+from dynamics_node.dynamics.batch import Evaluation
+import numpy as np
+import pytest
+from support.comparison import assert_terms_agree
+from support.machine_code import needs_machine_code
+from support.random_payload import random_body
+from support.robots import PENDULUM, random_urdf
+
+pytestmark = needs_machine_code
+
+# Of the machine code to the general kernel, as both are to the judges.
+RELATIVE = 1e-11
+
+# With a joint that turns, one that slides, and links on fixed joints.
+SMALL = random_urdf(12, joints=2)
+
+
+@pytest.fixture(scope='module')
+def compiled(tmp_path_factory):
+    """Where the machine code of SMALL lies, both its own and that for payloads."""
+    place = tmp_path_factory.mktemp('compiled')
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv('DYNAMICS_NODE_CACHE_DIR', str(place))
+        assert RobotModel.from_urdf(SMALL).specialise(loads=True)
+    return place
+
+
+@pytest.fixture
+def small(compiled, folder):
+    """SMALL with all its machine code, from disk."""
+    shutil.copytree(compiled, folder, dirs_exist_ok=True)
+    model = RobotModel.from_urdf(SMALL)
+    assert model.is_specialised
+    return model
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(tmp_path))
+    monkeypatch.setattr(compile, '_loaded', {})
+    monkeypatch.setattr(worker, '_processes', {})
+    return tmp_path
+
+
+def test_a_model_that_is_used_often_gets_machine_code_by_itself():
+    model = RobotModel.from_urdf(PENDULUM)
+    q = np.array([0.3])
+    expected = model.gravity_torque(q)
+    end = time.monotonic() + 60
+    while not model.is_specialised and time.monotonic() < end:
+        np.testing.assert_allclose(model.gravity_torque(q), expected, rtol=1e-14)
+    assert model.is_specialised
+    np.testing.assert_allclose(model.gravity_torque(q), expected, rtol=1e-14)
+
+
+def test_a_model_that_is_used_once_does_not():
+    model = RobotModel.from_urdf(PENDULUM)
+    model.gravity_torque([0.3])
+    assert model._evaluation.specialisation._process is None
+
+
+def test_the_next_model_of_the_robot_has_it_at_once():
+    assert not RobotModel.from_urdf(PENDULUM).is_specialised
+    assert RobotModel.from_urdf(PENDULUM).specialise()
+    model = RobotModel.from_urdf(PENDULUM)
+    assert model.is_specialised
+    assert inspect.isbuiltin(model.dynamics)
+
+
+def test_models_under_another_gravity_get_it_too():
+    model = RobotModel.from_urdf(PENDULUM)
+    before = model.with_gravity((0.0, 0.0, 0.0))
+    assert model.specialise()
+    after = model.with_gravity((0.0, 0.0, -1.0))
+    for other in (before, after):
+        assert other.is_specialised
+        assert inspect.isbuiltin(other.gravity_torque)
+    np.testing.assert_array_equal(before.gravity_torque(np.array([0.3])), [0.0])
+
+
+def test_it_can_be_asked_for_without_waiting():
+    model = RobotModel.from_urdf(PENDULUM)
+    began = time.process_time()
+    model.specialise(wait=False)
+    # Neither waited for nor made here: either takes a second of work.
+    assert not model.is_specialised
+    assert time.process_time() - began < 0.1
+    assert model.specialise(wait=True)
+
+
+def test_while_enough_others_are_being_made_it_is_asked_for_again(monkeypatch):
+    monkeypatch.setattr(worker, '_MOST_AT_ONCE', 0)
+    model = RobotModel.from_urdf(PENDULUM)
+    model.specialise(wait=False)
+    assert model._evaluation.specialisation._process is None
+    monkeypatch.setattr(worker, '_MOST_AT_ONCE', 1)
+    end = time.monotonic() + 60
+    while not model.is_specialised and time.monotonic() < end:
+        model.gravity_torque([0.3])
+    assert model.is_specialised
+
+
+def test_it_can_be_switched_off(monkeypatch):
+    monkeypatch.setenv('DYNAMICS_NODE_SPECIALISE', '0')
+    model = RobotModel.from_urdf(PENDULUM)
+    assert not model.specialise()
+    assert not inspect.isbuiltin(model.dynamics)
+    assert np.isfinite(model.gravity_torque([0.3])).all()
+
+
+def test_a_robot_with_very_many_joints_goes_on_with_the_general_kernel():
+    model = RobotModel.from_urdf(random_urdf(3, joints=60, with_mimic=False))
+    assert not model.specialise()
+    assert model.gravity_torque(np.zeros(60)).shape == (60,)
+
+
+@pytest.mark.parametrize(
+    'duplicate', [copy.copy, copy.deepcopy, lambda item: pickle.loads(pickle.dumps(item))]
+)
+def test_a_model_and_its_methods_can_be_copied_and_pickled(duplicate):
+    model = RobotModel.from_urdf(PENDULUM)
+    model.note = 'mine'
+    q = np.array([0.3])
+    for _ in range(2):
+        other = duplicate(model)
+        assert other.note == 'mine'
+        assert other.is_specialised == model.is_specialised
+        np.testing.assert_array_equal(other.gravity_torque(q), model.gravity_torque(q))
+        method = duplicate(model.gravity_torque)
+        np.testing.assert_allclose(method(q), model.gravity_torque(q), rtol=1e-14)
+        assert model.specialise()
+
+
+def test_what_somebody_put_in_the_place_of_a_method_stays():
+    model = RobotModel.from_urdf(PENDULUM)
+    model.gravity_torque = lambda q: np.zeros(1)
+    assert model.specialise()
+    np.testing.assert_array_equal(model.gravity_torque(np.array([0.3])), [0.0])
+
+
+@pytest.mark.parametrize('step', ['from_disk', 'make', 'start'])
+def test_whatever_fails_the_general_kernel_goes_on(step, monkeypatch, caplog):
+    def fail(*arguments):
+        raise OSError('as it happens')
+
+    monkeypatch.setattr(codegen, step, fail)
+    model = RobotModel.from_urdf(PENDULUM)
+    assert not model.specialise(wait=step != 'start')
+    assert np.isfinite(model.gravity_torque([0.3])).all()
+    assert 'the general kernel goes on: OSError: as it happens' in caplog.text
+
+
+def test_a_failing_hand_out_does_not_reach_the_caller(caplog):
+    class Refusing:
+        def _use(self, code):
+            raise AttributeError('no')
+
+    model, refusing = RobotModel.from_urdf(PENDULUM), Refusing()
+    assert model.specialise()
+    specialisation = Specialisation(*model._evaluation.packed)
+    specialisation.attach(refusing)
+    assert 'the general kernel goes on: AttributeError' in caplog.text
+
+
+def test_a_controller_may_use_its_model_to_the_end():
+    # The finalizers of garbage run in any order: the machine code must outlive them all.
+    script = f"""
+import gc
+import numpy as np
+from dynamics_node import RobotModel
+
+class Arm:
+    def __init__(self, model):
+        self.model, self.callback = model, self.hold
+    def hold(self):
+        return self.model.gravity_torque(np.array([0.3]))
+    def __del__(self):
+        self.hold()
+
+for _ in range(10):
+    model = RobotModel.from_urdf({str(PENDULUM)!r})
+    assert model.specialise()
+    Arm(model)
+    del model
+    gc.collect()
+last = Arm(RobotModel.from_urdf({str(PENDULUM)!r}))
+"""
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+    run = subprocess.run(
+        [sys.executable, '-c', script],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert (run.returncode, run.stderr) == (0, '')
+
+
+def test_a_method_of_a_subclass_stays():
+    class Doubled(RobotModel):
+        def gravity_torque(self, q):
+            return 2.0 * super().gravity_torque(q)
+
+    model, plain = Doubled.from_urdf(PENDULUM), RobotModel.from_urdf(PENDULUM)
+    assert model.specialise()
+    assert inspect.isbuiltin(model.dynamics)
+    np.testing.assert_allclose(model.gravity_torque([0.3]), 2.0 * plain.gravity_torque([0.3]))
+
+
+def test_python_may_end_while_it_is_made(folder):
+    script = (
+        f'from dynamics_node import RobotModel\n'
+        f'RobotModel.from_urdf({str(PENDULUM)!r}).specialise(wait=False)\n'
+    )
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+    run = subprocess.run(
+        [sys.executable, '-W', 'always', '-c', script],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert (run.returncode, run.stderr) == (0, '')
+    # The other process finishes what it has begun.
+    end = time.monotonic() + 60
+    while not list(folder.iterdir()) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert list(folder.iterdir())
+
+
+def begun():
+    """Return how many processes have been started to compile."""
+    return len(worker._processes)
+
+
+def used_until_specialised(model):
+    q = np.zeros(len(model.joint_names))
+    end = time.monotonic() + 60
+    while not model.is_specialised and time.monotonic() < end:
+        model.gravity_torque(q)
+    assert model.is_specialised
+
+
+def with_random_payload(model, rng):
+    links = [link for link, frame in model.tree.links.items() if frame.body >= 0]
+    return model.with_payload(links[int(rng.integers(len(links)))], *random_body(rng))
+
+
+def assert_as_the_general_kernel(model, rng):
+    """Compare one state and a batch, all quantities; the general kernel knows no machine code."""
+    assert inspect.isbuiltin(model.dynamics)
+    general = Evaluation(
+        model._evaluation.packed,
+        model.joint_names,
+        Specialisation(np.empty((0, 3), dtype=np.int64), np.zeros((1, 28))),
+    )
+    states = rng.uniform(-2.0, 2.0, (3, 9, len(model.joint_names)))
+    batch = (
+        *model.dynamics(*states[:2]),
+        model.mass_matrix(states[0]),
+        model.gravity_torque(states[0]),
+        model.inverse_dynamics(*states),
+    )
+    for i, (q, qd, qdd) in enumerate(zip(*states, strict=True)):
+        terms, effort = general.dynamics(q, qd), general.inverse_dynamics(q, qd, qdd)
+        scale = max(
+            np.abs(terms.mass_matrix @ qdd).max(),
+            np.abs(terms.gravity_torque).max(),
+            np.abs(effort).max(),
+            np.abs(terms.mass_matrix).max(),
+        )
+        one = (
+            *model.dynamics(q, qd),
+            model.mass_matrix(q),
+            model.gravity_torque(q),
+            model.inverse_dynamics(q, qd, qdd),
+        )
+        for D, C, G, D_alone, G_alone, tau in (one, [answer[i] for answer in batch]):
+            assert_terms_agree(model, qd, (D, C, G), terms, RELATIVE)
+            assert_terms_agree(
+                model, qd, (D_alone, model.coriolis_matrix(q, qd), G_alone), terms, RELATIVE
+            )
+            np.testing.assert_allclose(tau, effort, rtol=0, atol=1e-12 * scale)
+
+
+def test_a_second_payload_starts_no_compiler():
+    model = RobotModel.from_urdf(SMALL)
+    rng = np.random.default_rng(5)
+    assert model.specialise()
+    assert begun() == 0
+    used_until_specialised(with_random_payload(model, rng))
+    assert begun() == 1
+    for _ in range(20):
+        other = with_random_payload(model, rng).with_rotor_inertia(rng.uniform(0.0, 1.0))
+        assert other.is_specialised
+        assert_as_the_general_kernel(other, rng)
+        used_until_specialised(other)
+    assert begun() == 1
+    # Nor does a robot that differs in nothing but its inertia.
+    heavier = RobotModel.from_urdf(SMALL.replace('mass value="', 'mass value="1'))
+    assert not heavier.is_specialised
+    assert with_random_payload(heavier, rng).is_specialised
+    assert begun() == 1
+
+
+def test_models_that_carried_something_before_it_was_ready_get_it_too():
+    model = RobotModel.from_urdf(PENDULUM)
+    light, heavy = model.with_payload('rod', 1.0), model.with_payload('rod', 50.0)
+    geared = model.with_rotor_inertia(0.3)
+    assert light.specialise()
+    assert heavy.is_specialised
+    assert geared.is_specialised
+    assert not model.is_specialised
+    assert (
+        len(
+            {
+                float(robot.mass_matrix(np.zeros(1))[0, 0])
+                for robot in (model, light, heavy, geared)
+            }
+        )
+        == 4
+    )
+
+
+def test_that_for_payloads_can_be_asked_for_before_one_comes():
+    model = RobotModel.from_urdf(PENDULUM)
+    q = np.zeros(1)
+    model.specialise(wait=False, loads=True)
+    assert begun() == 1
+    used_until_specialised(model)
+    # One after the other.
+    end = time.monotonic() + 10
+    while begun() < 2 and time.monotonic() < end:
+        time.sleep(0.001)
+    assert begun() == 2
+    for process in worker._processes.values():
+        assert process.wait(60.0) == 0
+    # The first model that carries something finds it, and so do all that come later.
+    loaded = model.with_payload('rod', 1.0)
+    end = time.monotonic() + 10
+    while not loaded.is_specialised and time.monotonic() < end:
+        time.sleep(0.001)
+    assert loaded.is_specialised
+    assert model.with_payload('rod', 2.0).is_specialised
+    assert begun() == 2
+    again = RobotModel.from_urdf(PENDULUM)
+    assert again.specialise(loads=True)
+    np.testing.assert_array_equal(
+        again.with_payload('rod', 1.0).mass_matrix(q), loaded.mass_matrix(q)
+    )
+
+
+def test_a_new_model_does_not_wait_while_machine_code_is_loaded(small, monkeypatch):
+    begun_to_load, may_end = threading.Event(), threading.Event()
+    right = codegen.from_disk
+
+    def slow(*packed):
+        begun_to_load.set()
+        assert may_end.wait(60.0)
+        return right(*packed)
+
+    specialisation = small._specialisation.for_any_inertia
+    specialisation.code = None
+    monkeypatch.setattr(codegen, 'from_disk', slow)
+    thread = threading.Thread(target=specialisation._take)
+    thread.start()
+    try:
+        assert begun_to_load.wait(60.0)
+        loaded = small.with_payload('link0', 1.0)
+        assert not loaded.is_specialised
+    finally:
+        may_end.set()
+        thread.join()
+    assert inspect.isbuiltin(loaded.dynamics)
+
+
+def test_both_can_be_waited_for():
+    model = RobotModel.from_urdf(PENDULUM)
+    assert model.with_payload('rod', 1.0).specialise(loads=True)
+    assert not model.is_specialised
+    assert model.specialise(loads=True)
+    assert model.with_rotor_inertia(1.0).is_specialised
+    assert begun() == 0
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_a_payload_and_rotors_on_a_random_tree(seed):
+    rng = np.random.default_rng(seed)
+    model = RobotModel.from_urdf(random_urdf(seed, joints=1 + seed))
+    loaded = (
+        with_random_payload(model, rng)
+        .with_rotor_inertia(rng.uniform(0.0, 1.0, len(model.joint_names)))
+        .with_gravity(rng.normal(0.0, 6.0, 3))
+    )
+    assert loaded.specialise()
+    for robot in (loaded, with_random_payload(loaded, rng), loaded.with_rotor_inertia(0.0)):
+        assert_as_the_general_kernel(robot, rng)
+
+
+def test_a_payload_that_is_removed_gives_the_robot_back_to_the_last_bit(small):
+    model, rng = small, np.random.default_rng(8)
+    states = rng.uniform(-2.0, 2.0, (2, 9, len(model.joint_names)))
+    before, batch = model.dynamics(*states[:, 0]), model.dynamics(*states)
+    loaded = model.with_payload('link0', *random_body(rng)).with_rotor_inertia(1.0)
+    assert loaded.is_specialised
+    assert not np.array_equal(loaded.dynamics(*states).mass_matrix, batch.mass_matrix)
+    removed = loaded.with_payload('link0', 0.0).with_rotor_inertia(0.0)
+    assert removed._evaluation.specialisation is model._evaluation.specialisation
+    for old, new in zip(
+        (*before, *batch),
+        (*removed.dynamics(*states[:, 0]), *removed.dynamics(*states)),
+        strict=True,
+    ):
+        assert old.tobytes() == new.tobytes()
+
+
+def test_a_link_without_mass_may_become_loaded():
+    # The tip weighs nothing, so D is singular, whatever the state: until it carries something.
+    text = random_urdf(12, joints=2, with_mimic=False).replace(
+        '</robot>',
+        """
+        <link name="tip"/><joint name="last" type="continuous"><parent link="link1"/>
+        <child link="tip"/><axis xyz="0 0 1"/></joint></robot>""",
+    )
+    model = RobotModel.from_urdf(text)
+    assert model.specialise()
+    rng = np.random.default_rng(12)
+    q, qd, tau = rng.uniform(-1.0, 1.0, (3, 3))
+    loaded = model.with_payload('tip', *random_body(rng))
+    assert loaded.specialise()
+    assert_as_the_general_kernel(loaded, rng)
+    qdd = loaded.forward_dynamics(q, qd, tau)
+    np.testing.assert_allclose(loaded.inverse_dynamics(q, qd, qdd), tau, rtol=0, atol=1e-10)
+    # The same machine code sees that nothing is there, where only another link is loaded.
+    elsewhere = loaded.with_payload('link0', *random_body(rng))
+    assert elsewhere.is_specialised
+    for singular in (model, elsewhere):
+        with pytest.raises(SingularMassMatrixError):
+            singular.forward_dynamics(q, qd, tau)
+
+
+def test_a_payload_far_heavier_than_the_robot_does_not_spoil_it_for_others(monkeypatch):
+    # What is loaded is compared at loads that fit the robot, not at whatever comes first.
+    model = RobotModel.from_urdf(random_urdf(4, joints=3, with_mimic=False))
+    assert model.with_payload(model.link_names[-1], 1.0).specialise()
+    monkeypatch.setattr(compile, '_loaded', {})
+    again = RobotModel.from_urdf(random_urdf(4, joints=3, with_mimic=False))
+    assert again.with_payload(model.link_names[-1], 1e15).is_specialised
+    assert_as_the_general_kernel(
+        again.with_payload(model.link_names[-1], 2.0), np.random.default_rng(4)
+    )
+
+
+def test_a_thousand_payloads_leave_nothing_behind(small):
+    model, rng = small, np.random.default_rng(9)
+    bodies = [random_body(rng) for _ in range(10)]
+    q = rng.uniform(-1.0, 1.0, len(model.joint_names))
+    assert model.with_payload('link0', *bodies[0]).is_specialised
+    processes, codes = begun(), len(compile._loaded)
+
+    def load(times):
+        for i in range(times):
+            loaded = model.with_payload('link0', *bodies[i % 10])
+            loaded.gravity_torque(q)
+        return weakref.ref(loaded)
+
+    load(100)
+    gc.collect()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    gc.disable()
+    try:
+        last = load(1000)
+        # No circle either: it goes when nobody holds it, not when garbage is collected.
+        assert last() is None
+    finally:
+        gc.enable()
+    assert len(model._specialisation.for_any_inertia._models) == 0
+    assert (begun(), len(compile._loaded)) == (processes, codes)
+    # A model and its entries take some 10 kB: a thousand would be 10 MB.
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4_000
+
+
+def test_threads_load_and_free_models_side_by_side(small):
+    model, rng = small, np.random.default_rng(9)
+    states = rng.uniform(-1.0, 1.0, (8, len(model.joint_names)))
+    bodies = [random_body(rng) for _ in range(8)]
+
+    def expected(i):
+        other = model.with_payload('link1', *bodies[i])
+        return other._evaluation.mass_matrix(states[i])
+
+    wanted = [expected(i) for i in range(8)]
+
+    def work(i):
+        worst = 0.0
+        for _ in range(200):
+            D = model.with_payload('link1', *bodies[i]).mass_matrix(states[i])
+            worst = max(worst, np.abs(D - wanted[i]).max())
+        return worst
+
+    with ThreadPoolExecutor(8) as pool:
+        assert max(pool.map(work, range(8))) < 1e-12
+
+
+@pytest.mark.parametrize('ready', [False, True])
+def test_a_loaded_model_can_be_pickled(ready, request):
+    model = request.getfixturevalue('small') if ready else RobotModel.from_urdf(SMALL)
+    rng = np.random.default_rng(6)
+    loaded = with_random_payload(model, rng).with_rotor_inertia(0.2)
+    other = pickle.loads(pickle.dumps(loaded))
+    assert other.is_specialised == ready
+    q = np.full(len(model.joint_names), 0.3)
+    np.testing.assert_array_equal(other.mass_matrix(q), loaded.mass_matrix(q))
+    assert other._specialisation.for_any_inertia is other._evaluation.specialisation
+    assert with_random_payload(other, rng).specialise()
+    assert other.is_specialised
+    assert_as_the_general_kernel(other, rng)
+
+
+@pytest.mark.skipif(not hasattr(os, 'fork'), reason='needs fork')
+@pytest.mark.filterwarnings('ignore:This process.*is multi-threaded:DeprecationWarning')
+def test_a_forked_process_has_the_same_payloads(small):
+    model, rng = small, np.random.default_rng(6)
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            assert_as_the_general_kernel(with_random_payload(model, rng), rng)
+            code = 0
+        finally:
+            os._exit(code)
+    assert os.waitpid(child, 0)[1] == 0

@@ -1,0 +1,92 @@
+"""A robot's machine code, its own and that for payloads, keeps the promise."""
+
+from dynamics_node import RobotModel
+import numpy as np
+import pytest
+from support.extreme_robots import extreme_robots
+from support.machine_code import needs_machine_code
+from support.random_payload import random_body, with_payload_link
+from support.result_cache import BOUND, row
+from support.robots import public_robot
+
+pytestmark = needs_machine_code
+
+# Compiling takes a second or two each; the general kernel is held to this on all robots, and
+# `kernels/specialised` holds the machine code to the general kernel on random trees.
+PUBLIC = (
+    'ur_description/urdf/ur5_robot.urdf',
+    'panda_description/urdf/panda.urdf',
+    'kinova_description/robots/kinova.urdf',
+)
+EXTREME = [name for name in extreme_robots() if 'boom' in name or 'km away' in name]
+
+
+# With a joint that mimics another, with fingers, and as rounding hurts most.
+CARRIERS = {
+    'panda': (lambda: public_robot(PUBLIC[1]).read_text(), 'panda_leftfinger'),
+    'kinova': (lambda: public_robot(PUBLIC[2]).read_text(), 'j2s6s200_link_finger_1'),
+    'far away': (lambda: extreme_robots()['arm7, its base 1000 km away'], 'hand'),
+    'boom': (lambda: extreme_robots()['1e-6 kg at the end of a turning boom of 10 km'], 'link2'),
+}
+
+
+def specialised(source):
+    model = RobotModel.from_urdf(source)
+    assert model.specialise()
+    return model
+
+
+@pytest.mark.parametrize('name', PUBLIC)
+def test_a_public_robot_keeps_the_promise(name):
+    text = public_robot(name).read_text()
+    errors = row(name, text, specialised(text)).errors
+    for judge in ('pinocchio', 'exact'):
+        for quantity, error in errors['library', judge].items():
+            assert error <= BOUND, (judge, quantity)
+
+
+@pytest.mark.parametrize('name', EXTREME)
+def test_an_extreme_robot_keeps_its_digits(name):
+    text = extreme_robots()[name]
+    errors = row(name, text, specialised(text)).errors['library', 'exact']
+    for quantity in ('D', 'C', 'G', 'ID', 'energy'):
+        assert errors[quantity] <= BOUND, quantity
+
+
+@pytest.mark.parametrize('name', CARRIERS)
+def test_machine_code_for_payloads_keeps_the_promise(name):
+    text, link = CARRIERS[name][0](), CARRIERS[name][1]
+    rng = np.random.default_rng(3)
+    model = RobotModel.from_urdf(text)
+    assert model.with_payload(link, 1.0).specialise()
+    for _ in range(2):
+        body = random_body(rng)
+        loaded = model.with_payload(link, *body)
+        assert loaded.is_specialised
+        errors = row(name, with_payload_link(text, link, *body), loaded).errors
+        for judge in ('exact',) if name in ('far away', 'boom') else ('pinocchio', 'exact'):
+            for quantity, error in errors['library', judge].items():
+                assert error <= BOUND, (judge, quantity)
+
+
+def test_machine_code_for_payloads_knows_links_that_weigh_nothing():
+    # The last three links are empty frames that joints turn.
+    frames = (('tool0', 'e0', '1 0 0'), ('e0', 'e1', '0 1 0'), ('e1', 'e2', '0 0 1'))
+    empty = ''.join(
+        f"""<link name="{link}"/><joint name="turns_{link}" type="continuous">
+        <parent link="{parent}"/><child link="{link}"/><origin xyz="0 0.1 0.05"/>
+        <axis xyz="{axis}"/></joint>"""
+        for parent, link, axis in frames
+    )
+    text = public_robot(PUBLIC[0]).read_text()
+    text = text[: text.rindex('</robot>')] + empty + '</robot>'
+    model = RobotModel.from_urdf(text)
+    assert (model.tree.inertia[-3:] == 0.0).all()
+    for link in ('e2', 'e1'):
+        body = random_body(np.random.default_rng(4))
+        loaded = model.with_payload(link, *body)
+        assert loaded.specialise()
+        errors = row(link, with_payload_link(text, link, *body), loaded).errors
+        for judge in ('pinocchio', 'exact'):
+            for quantity, error in errors['library', judge].items():
+                assert error <= BOUND, (judge, quantity)

@@ -1,0 +1,241 @@
+"""Joint states from the topic: what is handed on, what is counted, what is warned about."""
+
+from types import SimpleNamespace
+
+from dynamics_node import RobotModel
+from dynamics_node.ros.parameters.table import check_all
+from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.joint_state_input import StateInput, WARN_EVERY
+from dynamics_node.safety import EffortLimiter, OutputSettings, TorquePath
+import numpy as np
+import pytest
+from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
+from support.processes import Client
+from support.robots import PENDULUM
+
+LIMITED = (
+    PENDULUM.read_text()
+    .replace('type="continuous"', 'type="revolute"')
+    .replace('<limit ', '<limit lower="-1" upper="1" ')
+)
+
+
+class Receiver:
+    """A node with nothing but the input, in this process."""
+
+    def __init__(self, raw, **overrides):
+        self.client = Client(
+            'receiver',
+            parameter_overrides=[
+                Parameter(f'qos_overrides./joint_states.subscription.{name}', value=value)
+                for name, value in overrides.items()
+            ],
+        )
+        self.robot = Robot(RobotModel.from_urdf(LIMITED), ())
+        # A busy machine may take its time from one process to the other.
+        settings = OutputSettings(5.0, 0.0, 0.0, 'ramp_to_zero')
+        self.path = TorquePath(settings)
+        self.path.use(self.robot.buffer)
+        self.path.configure(
+            0.0,
+            settings,
+            self.robot.compensation(check_all({})),
+            EffortLimiter(np.ones(1), np.ones(1), np.ones(1), ('hinge',)),
+            self.robot.motion_limits(()),
+        )
+        self.received, self.errors, self.warnings = [], [], []
+        node = self.client.node
+        node.destroy_publisher(self.client.states)
+        self.input = StateInput(
+            node,
+            {'allow_several_state_publishers': False},
+            SimpleNamespace(path=self.path),
+            self,
+            raw,
+        )
+        self.input.logger = SimpleNamespace(
+            warning=self.warnings.append, info=lambda _: None, error=self.errors.append
+        )
+
+    def on_state(self, stamp):
+        """Note a usable state."""
+        self.received.append((list(self.robot.buffer.position), stamp))
+
+    def on_internal_error(self, message):
+        """Note an error of the callback."""
+        self.errors.append(message)
+
+    def spin(self):
+        self.client.executor.spin_once(timeout_sec=0.0)
+
+
+@pytest.fixture(params=[True, False], ids=['raw', 'rclpy'])
+def receiver(request):
+    receiver = Receiver(request.param)
+    yield receiver
+    receiver.client.close()
+
+
+def at(client, *positions):
+    """Return an action that publishes states."""
+
+    def publish():
+        for position in positions:
+            client.publish(['hinge'], [position])
+
+    return publish
+
+
+def until_received(client, receiver, *positions):
+    """Publish until something was received, then wait until nothing is on its way."""
+    receiver.received.clear()
+    both = at(client, *positions)
+    client.until(lambda: receiver.received, lambda: (both(), receiver.spin()))
+    client.during(0.05, receiver.spin)
+    receiver.received.clear()
+
+
+def test_the_newest_state_wins_and_those_before_it_are_counted(client, receiver):
+    until_received(client, receiver, 0.0)
+    assert receiver.input.count_publishers() == 1
+    at(client, 0.0)()
+    client.until(lambda: receiver.received, receiver.spin)
+    before = receiver.input.skipped
+    at(client, *(0.001 * i for i in range(9)))()
+    client.during(0.02)
+    client.until(lambda: receiver.received[-1][0] == [0.008], receiver.spin)
+    assert len(receiver.received) == 2
+    assert receiver.input.skipped - before == 8
+    at(client, *(0.001 * i for i in range(9, 12)))()
+    client.during(0.02)
+    client.until(lambda: receiver.received[-1][0] == [0.011], receiver.spin)
+    assert receiver.input.skipped - before == 10
+
+
+def test_a_position_beyond_its_limits_is_computed_with_and_warned_about(client, receiver):
+    until_received(client, receiver, 1.25)
+    assert receiver.warnings == ['beyond the position limits: hinge at 1.25 (limits -1 to 1)']
+
+
+def test_what_is_dropped_is_warned_about_once_a_second_by_its_kind(client, receiver):
+    until_received(client, receiver, 0.0)
+
+    def bad():
+        client.publish(['hinge'], [])
+        client.until(lambda: receiver.robot.buffer.rejected['length'], receiver.spin)
+        client.publish(['hinge', 'hinge'], [0.0, 0.0])
+        client.until(lambda: receiver.robot.buffer.rejected['name twice'], receiver.spin)
+
+    for _ in range(3):
+        bad()
+    assert [text.split(':')[0] for text in receiver.warnings] == ['joint state dropped'] * 2
+    assert receiver.received == []
+
+
+def test_an_exception_in_the_callback_is_told_and_the_next_state_is_taken(client, receiver):
+    until_received(client, receiver, 0.0)
+    receiver.robot.buffer.runaway = lambda: 1 / 0
+    client.until(lambda: receiver.errors, lambda: (at(client, 0.0)(), receiver.spin()))
+    assert any(
+        'internal error in ' in text and 'division by zero' in text for text in receiver.errors
+    )
+    del receiver.robot.buffer.runaway
+    until_received(client, receiver, 0.0)
+
+
+def test_a_stamp_is_handed_on_and_a_missing_one_is_the_arrival(client, receiver):
+    until_received(client, receiver, 0.0)
+    message = JointState(name=['hinge'], position=[0.0])
+    message.header.stamp = client.node.get_clock().now().to_msg()
+    client.states.publish(message)
+    client.until(lambda: receiver.received, receiver.spin)
+    assert receiver.received[-1][1] == message.header.stamp
+    message.header.stamp.sec = message.header.stamp.nanosec = 0
+    before = client.node.get_clock().now().to_msg()
+    client.states.publish(message)
+    client.until(lambda: len(receiver.received) == 2, receiver.spin)
+    stamp = receiver.received[-1][1]
+    assert (stamp.sec, stamp.nanosec) >= (before.sec, before.nanosec)
+
+
+def test_what_cannot_be_read_is_not_counted_as_skipped_besides(client):
+    receiver = Receiver(raw=True)
+    try:
+        until_received(client, receiver, 0.0)
+        assert receiver.input.count_publishers() == 1
+        at(client, 0.0)()
+        client.until(lambda: receiver.received, receiver.spin)
+        before, rejected = receiver.input.skipped, receiver.robot.buffer.rejected
+        client.states.publish(b'\x00\x01\x00\x00no joint state')
+        client.until(lambda: rejected['unreadable'] == 1, receiver.spin)
+        receiver.received.clear()
+        at(client, 0.0)()
+        client.until(lambda: receiver.received, receiver.spin)
+        assert receiver.input.skipped == before
+    finally:
+        receiver.client.close()
+
+
+def test_an_arm_that_rests_beyond_its_limit_does_not_fill_the_log(client, receiver):
+    until_received(client, receiver, 1.25)
+    client.during(1.5 * WARN_EVERY, lambda: client.publish(['hinge'], [1.25]))
+    receiver.spin()
+    assert sum('beyond the position limits' in text for text in receiver.warnings) == 1
+
+
+def test_two_publishers_share_a_queue_in_which_no_state_takes_the_place_of_another(
+    client, receiver
+):
+    gripper = Client('gripper')
+    rounds, heard = iter(range(10**6)), receiver.robot.buffer
+
+    def together():
+        position = next(rounds) % 1000 * 1e-3
+        client.publish(['hinge'], [position])
+        gripper.publish(['finger'], [0.0])
+        gripper.publish(['finger'], [0.0])
+        return position
+
+    try:
+        # Discovered both, and the new subscription by both.
+        client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 2)
+        client.until(
+            lambda: heard.newest_names == ('hinge',), lambda: (at(client, 0.0)(), receiver.spin())
+        )
+        client.until(
+            lambda: heard.newest_names == ('finger',),
+            lambda: (gripper.publish(['finger'], [0.0]), receiver.spin()),
+        )
+        client.during(0.05, receiver.spin)
+        for _ in range(20):
+            accepted, position = heard.accepted, together()
+            client.until(lambda: heard.accepted == accepted + 3, receiver.spin)  # noqa: B023
+            assert heard.position[0] == position
+        # It is there only as long as the second one is, and never changed while efforts are sent.
+        receiver.input._path = SimpleNamespace(is_on=True)
+    finally:
+        gripper.close()
+    subscription = receiver.input.subscription
+    client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 1)
+    assert receiver.input.subscription is subscription
+    receiver.input._path = receiver.path
+    receiver.input.adapt_queue()
+    assert receiver.input.subscription is not subscription
+    until_received(client, receiver, 0.0)
+    at(client, *(0.001 * i for i in range(9)))()
+    client.during(0.02)
+    client.until(lambda: receiver.received and receiver.received[-1][0] == [0.008], receiver.spin)
+    assert len(receiver.received) == 1
+
+
+def test_a_depth_that_was_asked_for_is_left_alone(client):
+    receiver = Receiver(raw=False, depth=3)
+    gripper = Client('gripper')
+    try:
+        subscription = receiver.input.subscription
+        client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 2)
+        assert receiver.input.subscription is subscription
+    finally:
+        gripper.close()
+        receiver.client.close()

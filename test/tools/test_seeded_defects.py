@@ -1,0 +1,56 @@
+"""Each thing that a target must notice, planted and noticed."""
+
+import json
+import os
+from pathlib import Path
+import subprocess
+import sys
+
+from fuzz.seeded_defects import SEEDED
+import pytest
+
+ROOT = Path(__file__).parents[2]
+NOTICED = {
+    'nothing in a description': "['taken",
+    'a file is opened': "OpenedError: open ('/dev/null'",
+    'a file is opened and the error caught': "OpenedError: open ('/dev/null'",
+    'a socket is opened': 'OpenedError: socket.__new__',
+    'something is imported': 'OpenedError: open',
+    'another library logs': 'AssertionError: root logs: dear me',
+    'an exception of another kind': 'KeyError: 0',
+    'a message of two lines': 'AssertionError: not to be printed',
+    'a message without end': 'AssertionError: 99999 characters',
+    'a mass matrix that is not finite': 'AssertionError: D is not finite',
+    'nothing in the states': "['taken: usable', 'taken: usable', 'taken: usable']",
+    'rclpy prints': 'PrintedError: sequence size exceeds',
+    'a cut message is read': 'AssertionError: rclpy does not read this message',
+    'a number is wrong': 'AssertionError',
+    'a number is wrong in a state like the last': 'AssertionError',
+    'a good message is refused': 'AssertionError: rclpy reads this message',
+    'a refused message moves a joint': 'AssertionError: a refused message changed',
+    'a position that is not finite': 'AssertionError: position [nan',
+}
+
+
+@pytest.fixture(scope='module')
+def said():
+    """Return what the targets say of each defect."""
+    run = subprocess.run(
+        [sys.executable, '-m', 'fuzz.seeded_defects'],
+        capture_output=True,
+        text=True,
+        cwd=ROOT / 'tools',
+        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    return json.loads(run.stdout)
+
+
+def test_everything_planted_is_looked_at():
+    assert list(NOTICED) == list(SEEDED)
+
+
+@pytest.mark.parametrize('defect', NOTICED)
+def test_what_is_planted_is_noticed(defect, said):
+    assert said[defect].startswith(NOTICED[defect])
