@@ -69,7 +69,7 @@ def measure(robot, count, loaded, rounds, say=print):
     Q = rng.uniform(-1.0, 1.0, (count, robot.n))
     QD = rng.normal(0.0, 1.0, (count, robot.n))
     all_cores = os.cpu_count() or 1
-    robot.model.specialise()
+    robot.model.specialize()
     dynamics = robot.model.dynamics
     answer = dynamics(Q, QD)
     functions: dict = {}

@@ -40,7 +40,7 @@ def peak_besides_result(count):
 def main(count):
     """Print what one batch call took, as JSON."""
     robot = arm7()
-    robot.model.specialise()
+    robot.model.specialize()
     rng = np.random.default_rng(5)
     Q, QD = rng.uniform(-1.0, 1.0, (2, count, robot.n))
     # The code is loaded, and the first threads are there, before the measured call.

@@ -74,7 +74,7 @@ def interleaved(candidates, rounds, slow_rounds=SLOW_ROUNDS):
     """
     Time candidates in turns, each round in another order.
 
-    What disturbs the machine for a moment then hits neighbours alike, and no candidate always
+    What disturbs the machine for a moment then hits neighbors alike, and no candidate always
     finds the caches as the same other one left them. The garbage collector is off meanwhile.
 
     Parameters

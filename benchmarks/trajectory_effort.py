@@ -102,7 +102,7 @@ def measure(count=POINTS, rounds=ROUNDS):
 
     """
     robot = arm7()
-    robot.model.specialise()
+    robot.model.specialize()
     time, q, qd, qdd = motion(robot, count)
     effort = robot.model.trajectory_effort
     ours = 'efforts, from positions alone'

@@ -46,7 +46,7 @@ def workspace():
     from pictures import workspace
 
     robot = RobotModel.from_urdf(ARM7)
-    robot.specialise(loads=True)
+    robot.specialize(loads=True)
     workspace.draw(robot, DOCS / 'workspace.png')
 
 

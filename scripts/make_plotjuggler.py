@@ -111,8 +111,8 @@ def _tab(window, name, plots):
     for column in columns:
         # With one child each PlotJuggler has areas directly in the outer one.
         parent = across if len(column) == 1 else _splitter(across, '-', len(column))
-        for title, curves, colours in column:
-            _plot(parent, title, curves, colours)
+        for title, curves, colors in column:
+            _plot(parent, title, curves, colors)
 
 
 def _splitter(parent, orientation, count):
@@ -125,7 +125,7 @@ def _splitter(parent, orientation, count):
     )
 
 
-def _plot(parent, title, curves, colours):
+def _plot(parent, title, curves, colors):
     area = ET.SubElement(parent, 'DockArea', name=title)
     plot = ET.SubElement(
         area,
@@ -141,7 +141,7 @@ def _plot(parent, title, curves, colours):
     )
     ET.SubElement(plot, 'limitY')
     for i, curve in enumerate(curves):
-        ET.SubElement(plot, 'curve', name=curve, color=colours[i % len(colours)])
+        ET.SubElement(plot, 'curve', name=curve, color=colors[i % len(colors)])
 
 
 def _plugins(root, topics):

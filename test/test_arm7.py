@@ -63,7 +63,7 @@ def test_the_file_is_exactly_what_the_generator_writes(generator):
 
 
 def test_every_inertial_belongs_to_a_possible_body(robot):
-    """Mass and principal moments are positive and fulfil the triangle inequality."""
+    """Mass and principal moments are positive and fulfill the triangle inequality."""
     for name, mass, _, tensor in inertials(robot):
         moments = np.linalg.eigvalsh(tensor)
         assert mass > 0 and moments[0] > 0, name

@@ -40,14 +40,14 @@ def run(path):
 def test_the_code_of_the_readme_runs(monkeypatch, capsys):
     monkeypatch.chdir(ROOT)
     names = run(ROOT / 'README.md')
-    assert names['loaded'].total_mass - names['robot'].total_mass == pytest.approx(1.2)
+    assert names['loaded'].moving_mass - names['robot'].moving_mass == pytest.approx(1.2)
     assert '(8, 8) (1000, 8, 8)' in capsys.readouterr().out
     assert len(names['robot'].joint_names) == 8
 
 
 def test_machine_code_is_there_when_its_page_says_so(monkeypatch):
     monkeypatch.chdir(ROOT)
-    assert run(ROOT / 'docs/how_to/speed.md')['robot'].is_specialised == is_supported()
+    assert run(ROOT / 'docs/how_to/speed.md')['robot'].is_specialized == is_supported()
 
 
 @pytest.mark.parametrize('path', [path for path in DOCUMENTS if blocks(path)], ids=name_of)

@@ -109,7 +109,7 @@ class Controller:
     """A controller that takes every goal, and is never done with it if it is told so."""
 
     def __init__(self, is_done):
-        self.is_done, self.cancelled, self.accepted, self.goal = is_done, 0, True, None
+        self.is_done, self.canceled, self.accepted, self.goal = is_done, 0, True, None
 
     def wait_for_server(self, timeout_sec):
         return True
@@ -122,14 +122,14 @@ class Controller:
         return Done(SimpleNamespace(result=SimpleNamespace(error_code=0)), self.is_done)
 
     def cancel_goal_async(self):
-        self.cancelled += 1
+        self.canceled += 1
         return Done()
 
     def destroy(self):
         self.goal = self.goal or None
 
 
-def test_a_goal_that_is_not_done_in_time_is_cancelled(monkeypatch):
+def test_a_goal_that_is_not_done_in_time_is_canceled(monkeypatch):
     clock = [0.0]
     executor = SimpleNamespace(spin_once=lambda timeout_sec: clock.__setitem__(0, clock[0] + 0.1))
     action = SimpleNamespace(Goal=SimpleNamespace, Result=SimpleNamespace(SUCCESSFUL=0))
@@ -148,9 +148,9 @@ def test_a_goal_that_is_not_done_in_time_is_cancelled(monkeypatch):
         if is_done:
             follow(None, executor, motion)
         else:
-            with pytest.raises(RuntimeError, match='not done 3 s after the end: cancelled'):
+            with pytest.raises(RuntimeError, match='not done 3 s after the end: canceled'):
                 follow(None, executor, motion)
-        assert controller.cancelled == (not is_done)
+        assert controller.canceled == (not is_done)
         assert controller.goal.goal_time_tolerance.sec == 2
     assert clock[0] == pytest.approx(6.5, abs=0.2)
 

@@ -28,7 +28,7 @@ def calls(robot):
     dict of str to Call
 
     """
-    robot.model.specialise()
+    robot.model.specialize()
     return calls_of(robot.model)
 
 

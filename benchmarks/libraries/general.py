@@ -9,7 +9,7 @@ from .dynamics_node import calls_of, PACKAGE, VERSION
 __all__ = ['NAME', 'NOTE', 'PACKAGE', 'VERSION', 'calls']
 
 NAME = 'general kernel'
-NOTE = 'This library with `DYNAMICS_NODE_SPECIALISE=0`: compiled once for every robot.'
+NOTE = 'This library with `DYNAMICS_NODE_SPECIALIZE=0`: compiled once for every robot.'
 
 
 def calls(robot):
@@ -25,12 +25,12 @@ def calls(robot):
     dict of str to Call
 
     """
-    before = os.environ.get('DYNAMICS_NODE_SPECIALISE')
-    os.environ['DYNAMICS_NODE_SPECIALISE'] = '0'
+    before = os.environ.get('DYNAMICS_NODE_SPECIALIZE')
+    os.environ['DYNAMICS_NODE_SPECIALIZE'] = '0'
     try:
         model = RobotModel.from_urdf(robot.text)
     finally:
-        del os.environ['DYNAMICS_NODE_SPECIALISE']
+        del os.environ['DYNAMICS_NODE_SPECIALIZE']
         if before is not None:
-            os.environ['DYNAMICS_NODE_SPECIALISE'] = before
+            os.environ['DYNAMICS_NODE_SPECIALIZE'] = before
     return calls_of(model)

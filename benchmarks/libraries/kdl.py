@@ -41,9 +41,9 @@ def chain_of(robot):
         raise ValueError(f'expected a chain, got the parents {tree.parent.tolist()}')
     chain = PyKDL.Chain()
     for k in range(robot.n):
-        frame = _frame(tree.placement[k])
+        frame = _frame(tree.joint_placement[k])
         axis = frame.M * PyKDL.Vector(*tree.axis[k])
-        joint = PyKDL.Joint(tree.body_names[k], frame.p, axis, PyKDL.Joint.RotAxis)
+        joint = PyKDL.Joint(tree.moving_joint_names[k], frame.p, axis, PyKDL.Joint.RotAxis)
         chain.addSegment(PyKDL.Segment(joint, frame, _inertia(tree.inertia[k])))
     _CHAINS.append(chain)
     return chain
@@ -107,7 +107,7 @@ def _frame(matrix):
 
 
 def _inertia(J):
-    # KDL wants the tensor about the centre of mass, equations (3) and (4) backwards.
+    # KDL wants the tensor about the center of mass, equations (3) and (4) backwards.
     mass = J[3, 3]
     com = J[:3, 3] / mass
     planes = J[:3, :3] - mass * np.outer(com, com)

@@ -28,5 +28,5 @@ def calls(robot):
     """
     last = [link for link, frame in robot.model.tree.links.items() if frame.body >= 0][-1]
     loaded = robot.model.with_payload(last, _MASS)
-    loaded.specialise()
+    loaded.specialize()
     return calls_of(loaded)

@@ -43,14 +43,14 @@ def robot_of(robot):
     links: list = []
     for k in range(robot.n):
         # Body frames are turned such that the joint's axis is their z axis.
-        placement = turns[tree.parent[k] + 1].T @ tree.placement[k] @ turns[k + 1]
+        placement = turns[tree.parent[k] + 1].T @ tree.joint_placement[k] @ turns[k + 1]
         J = turns[k + 1].T @ tree.inertia[k] @ turns[k + 1]
         mass, com = J[3, 3], J[:3, 3] / J[3, 3]
         planes = J[:3, :3] - mass * np.outer(com, com)
         links.append(
             roboticstoolbox.Link(
                 roboticstoolbox.ET.SE3(SE3(placement, check=False)) * roboticstoolbox.ET.Rz(),
-                name=tree.body_names[k],
+                name=tree.moving_joint_names[k],
                 m=mass,
                 r=com,
                 I=np.trace(planes) * np.eye(3) - planes,

@@ -132,8 +132,8 @@ _loaded: dict = {}
 
 
 def is_wanted():
-    """Return False if DYNAMICS_NODE_SPECIALISE=0 asks to do without machine code for robots."""
-    return os.environ.get('DYNAMICS_NODE_SPECIALISE', '1') != '0'
+    """Return False if DYNAMICS_NODE_SPECIALIZE=0 asks to do without machine code for robots."""
+    return os.environ.get('DYNAMICS_NODE_SPECIALIZE', '1') != '0'
 
 
 class RobotCode:

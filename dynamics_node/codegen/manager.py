@@ -16,7 +16,7 @@ _ASK_EVERY = 50
 _log = logging.getLogger(__name__)
 
 
-class Specialisation:
+class Specialization:
     """
     Machine code for one robot, or the way to it.
 
@@ -29,7 +29,7 @@ class Specialisation:
     ----------
     code : RobotCode or None
         None while there is none.
-    for_any_inertia : Specialisation or None
+    for_any_inertia : Specialization or None
         The robot's code that takes the inertia of bodies and rotors as it comes; None if this
         is it.
 
@@ -44,7 +44,7 @@ class Specialisation:
         structure, numbers : numpy.ndarray
             See `kernels.packing.pack`.
         any_inertia : bool
-            See `kernels.specialised.quantities`.
+            See `kernels.specialized.quantities`.
 
         """
         self.code = None

@@ -112,7 +112,7 @@ class MujocoArm:
         self.data.qfrc_applied[self._dof[self._driven_rows]] = driven
 
     def push(self, force: Sequence[float], duration: float) -> None:
-        """Apply a force [N] in the base frame at the last link's centre of mass for a time [s]."""
+        """Apply a force [N] in the base frame at the last link's center of mass for a time [s]."""
         self._push_force = np.array(force, dtype=float)
         self._push_ends = self.data.time + duration
 

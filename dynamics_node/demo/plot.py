@@ -148,7 +148,7 @@ def _draw_effort(axis: Any, outcome: Outcome) -> None:
 
 
 def _shade(axis: Any, phases: list[Phase], wide: bool) -> None:
-    """Colour the background by phase, and name the wide phases above or the narrow ones inside."""
+    """Color the background by phase, and name the wide phases above or the narrow ones inside."""
     total = phases[-1].end - phases[0].start
     for phase in phases:
         axis.axvspan(phase.start, phase.end, color=PHASE_COLORS[phase.name], alpha=0.55, lw=0)
@@ -169,5 +169,5 @@ def _shade(axis: Any, phases: list[Phase], wide: bool) -> None:
 
 
 def _color(row: int) -> str:
-    """Return a joint's colour, the same in both diagrams."""
+    """Return a joint's color, the same in both diagrams."""
     return JOINT_COLORS[row % len(JOINT_COLORS)]

@@ -38,13 +38,13 @@ class Evaluation:
     ----------
     packed : tuple of numpy.ndarray
         See `kernels.packing.pack`.
-    specialisation : Specialisation
+    specialization : Specialization
         Machine code for this robot, if there is any; with a payload or rotors, that for any
         inertia.
 
     """
 
-    def __init__(self, packed, joint_names, specialisation):
+    def __init__(self, packed, joint_names, specialization):
         """
         Belong to a robot.
 
@@ -54,11 +54,11 @@ class Evaluation:
             See `kernels.packing.pack`.
         joint_names : tuple of str
             Of the n joints.
-        specialisation : Specialisation
+        specialization : Specialization
 
         """
         self.packed = packed
-        self.specialisation = specialisation
+        self.specialization = specialization
         self._joint_names = joint_names
         self._n = len(joint_names)
         self._state_shape = (self._n,)
@@ -68,7 +68,7 @@ class Evaluation:
         }
 
     def __reduce__(self):
-        return type(self), (self.packed, self._joint_names, self.specialisation)
+        return type(self), (self.packed, self._joint_names, self.specialization)
 
     def states(self, **values):
         """
@@ -141,11 +141,11 @@ class Evaluation:
         return self._run('inverse_dynamics', lead, arrays, _one(out), threads)[0]
 
     def forward_dynamics(self, q, qd, tau, *, threads=None):
-        """Return the accelerations that efforts cause, by a Cholesky factorisation of D."""
+        """Return the accelerations that efforts cause, by a Cholesky factorization of D."""
         lead, [q, qd, tau] = self.states(q=q, qd=qd, tau=tau)
         qdd, sound = np.empty_like(q), np.empty(len(q), dtype=bool)
-        if self.specialisation.code is None:
-            self.specialisation.count(len(q))
+        if self.specialization.code is None:
+            self.specialization.count(len(q))
         _in_pieces(
             lambda arrays, outputs: recursive.forward_dynamics(*self.packed, *arrays, *outputs),
             [q, qd, tau],
@@ -215,9 +215,9 @@ class Evaluation:
             outputs = [
                 array.reshape(count, *shape) for array, shape in zip(out, shapes, strict=True)
             ]
-        code = self.specialisation.code
+        code = self.specialization.code
         if code is None:
-            self.specialisation.count(count)
+            self.specialization.count(count)
         _in_pieces(
             lambda arrays, outputs: self._compute(code, name, arrays, outputs),
             arrays,
@@ -245,15 +245,15 @@ class Evaluation:
     # take longer than the formulas. Machine code for one state stands in for the method.
 
     def _gravity_of_one(self, q):
-        if self.specialisation.code is None:
-            self.specialisation.count(1)
+        if self.specialization.code is None:
+            self.specialization.count(1)
         G = np.empty(self._n)
         recursive.gravity_torque_of_one(*self.packed, q, G)
         return G
 
     def _run_one(self, name, *state):
-        if self.specialisation.code is None:
-            self.specialisation.count(1)
+        if self.specialization.code is None:
+            self.specialization.count(1)
         outputs = [np.empty(shape) for shape in self._one_shapes[name]]
         _KERNELS[name](*self.packed, *[array[None] for array in state], *outputs)
         return [output[0] for output in outputs]

@@ -280,14 +280,12 @@ def _rounding(tree, body, position, q):
     reach = np.full(len(q), np.linalg.norm(position[:3]))
     while body >= 0:
         chain.append(body)
-        reach += np.linalg.norm(tree.placement[body, :3, 3])
-        if tree.kind[body] == PRISMATIC:
-            reach += np.abs(
-                tree.multiplier[body] * q[:, tree.coordinate[body]] + tree.offset[body]
-            )
+        reach += np.linalg.norm(tree.joint_placement[body, :3, 3])
+        if tree.joint_type[body] == PRISMATIC:
+            reach += np.abs(tree.multiplier[body] * q[:, tree.q_index[body]] + tree.offset[body])
         body = tree.parent[body]
     result = np.zeros((len(q), len(tree.joint_names)))
     for k in chain:
-        lever = 1.0 if tree.kind[k] == PRISMATIC else reach
-        result[:, tree.coordinate[k]] += abs(tree.multiplier[k]) * lever
+        lever = 1.0 if tree.joint_type[k] == PRISMATIC else reach
+        result[:, tree.q_index[k]] += abs(tree.multiplier[k]) * lever
     return _ROUNDING * len(chain) * result

@@ -47,7 +47,7 @@ class JointSelection:
         self._available = available
         self._leaders = {
             name: available[place]
-            for name, place in zip(robot.tree.body_names, robot.tree.coordinate, strict=True)
+            for name, place in zip(robot.tree.moving_joint_names, robot.tree.q_index, strict=True)
         }
         # Counted once: looking for each name among all takes seconds for ten thousand.
         count = Counter(self.names)

@@ -15,7 +15,7 @@ class MomentumObserver:
     """
     Estimates the joint efforts that something outside the robot causes, without accelerations.
 
-    The generalised momentum p = D q̇ changes by the measured efforts, by what the model knows, and
+    The generalized momentum p = D q̇ changes by the measured efforts, by what the model knows, and
     by the rest, which is external:
 
         ṗ = τ + Cᵀ q̇ - G - friction + τ_ext

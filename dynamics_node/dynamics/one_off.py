@@ -2,7 +2,7 @@
 
 from .arguments import gravity_vector
 from .robot_model import RobotModel, STANDARD_GRAVITY
-from ..codegen.manager import Specialisation
+from ..codegen.manager import Specialization
 from ..kernels.packing import pack
 
 
@@ -31,10 +31,10 @@ def one_off_model(tree, gravity=STANDARD_GRAVITY):
 
     """
     gravity = gravity_vector(gravity)
-    return RobotModel(tree, gravity, specialisation=_WithoutCompiler(*pack(tree, gravity)))
+    return RobotModel(tree, gravity, specialization=_WithoutCompiler(*pack(tree, gravity)))
 
 
-class _WithoutCompiler(Specialisation):
+class _WithoutCompiler(Specialization):
     """Neither takes machine code from disk nor has any made."""
 
     def begin(self, loads=False):

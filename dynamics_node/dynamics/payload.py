@@ -21,9 +21,9 @@ class Payload:
     mass : float
         kg, > 0.
     com : numpy.ndarray, shape (3,)
-        Centre of mass in the link's frame, m; read-only.
+        Center of mass in the link's frame, m; read-only.
     inertia : numpy.ndarray, shape (3, 3)
-        Inertia tensor about the centre of mass, along the axes of the link's frame, kg m²;
+        Inertia tensor about the center of mass, along the axes of the link's frame, kg m²;
         off-diagonal entries -∫xy dm as in URDF; read-only.
 
     """
@@ -53,7 +53,7 @@ def make_payload(links, link, mass, com, inertia):
     com : array_like, shape (3,)
         m, in the link's frame.
     inertia : array_like, shape (3, 3), or None
-        kg m², about the centre of mass, along the link's axes; None for a point mass.
+        kg m², about the center of mass, along the link's axes; None for a point mass.
 
     Returns
     -------

@@ -12,7 +12,7 @@ from .payload import loaded_inertia, make_payload
 from .terms import DynamicsTerms
 from .trajectory import complete_trajectory
 from ..codegen import make_callable
-from ..codegen.manager import Specialisation
+from ..codegen.manager import Specialization
 from ..errors import ArgumentError
 from ..kernels.packing import pack
 from ..model import build_tree
@@ -36,7 +36,7 @@ class RobotModel:
 
     A robot that is used often gets machine code of its own, compiled by another process and kept
     on disk; until it is ready, and for large robots, a general kernel answers. The two agree to
-    rounding. See `specialise`.
+    rounding. See `specialize`.
 
     Revolute joints count in rad, rad/s, N m; prismatic ones in m, m/s, N. The base frame is the
     root link's frame.
@@ -51,7 +51,7 @@ class RobotModel:
         payload=None,
         rotor_inertia=0.0,
         friction=None,
-        specialisation=None,
+        specialization=None,
     ):
         """
         Make the model of a kinematic tree; most users want `from_urdf`.
@@ -67,7 +67,7 @@ class RobotModel:
             See `with_rotor_inertia`.
         friction : Friction, optional
             See `with_friction`; by default what the tree says.
-        specialisation : Specialisation, optional
+        specialization : Specialization, optional
             That of another model of the same tree, without payload and rotor inertia.
 
         Raises
@@ -85,15 +85,15 @@ class RobotModel:
             tree.joint_names, tree.friction[:, 0], tree.friction[:, 1], SMOOTHING_VELOCITY
         )
         self._inertia = loaded_inertia(tree, payload)
-        self._specialisation = specialisation or Specialisation(*pack(tree, self._gravity))
+        self._specialization = specialization or Specialization(*pack(tree, self._gravity))
         if self._inertia is not tree.inertia or self._rotor_inertia.any():
             packed = pack(tree, self._gravity, self._inertia, self._rotor_inertia)
-            specialisation = self._specialisation.for_any_inertia
+            specialization = self._specialization.for_any_inertia
         else:
             packed = pack(tree, self._gravity)
-            specialisation = self._specialisation
-        self._evaluation = Evaluation(packed, tree.joint_names, specialisation)
-        specialisation.attach(self)
+            specialization = self._specialization
+        self._evaluation = Evaluation(packed, tree.joint_names, specialization)
+        specialization.attach(self)
 
     @classmethod
     def from_urdf(cls, source, gravity=STANDARD_GRAVITY):
@@ -127,11 +127,11 @@ class RobotModel:
 
     def __setstate__(self, state):
         vars(self).update(state)
-        self._evaluation.specialisation.attach(self)
+        self._evaluation.specialization.attach(self)
 
     def __repr__(self):
         return (
-            f'RobotModel({self._n} joints, {self.total_mass:.6g} kg moving, '
+            f'RobotModel({self._n} joints, {self.moving_mass:.6g} kg moving, '
             f'gravity {self._gravity.tolist()} m/s^2)'
         )
 
@@ -181,7 +181,7 @@ class RobotModel:
         return self._tree.warnings
 
     @property
-    def total_mass(self):
+    def moving_mass(self):
         """Mass of everything that joints move, with the payload, kg."""
         return float(self._inertia[:, 3, 3].sum())
 
@@ -203,7 +203,7 @@ class RobotModel:
     @property
     def is_continuous(self):
         """Joints that turn without end, bool, shape (n,): revolute, with no position limit."""
-        kinds = dict(zip(self._tree.body_names, self._tree.kind, strict=True))
+        kinds = dict(zip(self._tree.moving_joint_names, self._tree.joint_type, strict=True))
         turns = [kinds[name] == REVOLUTE for name in self.joint_names]
         return np.array(turns, dtype=bool) & np.isinf(self._tree.limits[:, :2]).all(axis=1)
 
@@ -244,9 +244,9 @@ class RobotModel:
         mass : float
             kg; 0 for the robot without payload, to the last bit as it was before.
         com : array_like, shape (3,)
-            Centre of mass in the link's frame, m.
+            Center of mass in the link's frame, m.
         inertia : array_like, shape (3, 3), optional
-            Inertia tensor about the centre of mass, along the axes of the link's frame, kg m²;
+            Inertia tensor about the center of mass, along the axes of the link's frame, kg m²;
             off-diagonal entries -∫xy dm as in URDF. By default a point mass.
 
         Returns
@@ -336,17 +336,17 @@ class RobotModel:
             'payload': self._payload,
             'rotor_inertia': self._rotor_inertia,
             'friction': self._friction,
-            'specialisation': self._specialisation,
+            'specialization': self._specialization,
             **changes,
         }
         return type(self)(self._tree, **arguments)
 
     @property
-    def is_specialised(self):
+    def is_specialized(self):
         """Whether machine code of this robot's own is in use."""
-        return self._evaluation.specialisation.code is not None
+        return self._evaluation.specialization.code is not None
 
-    def specialise(self, wait=True, loads=False):
+    def specialize(self, wait=True, loads=False):
         """
         Ask for machine code of this robot's own, without waiting until it is used often.
 
@@ -366,14 +366,14 @@ class RobotModel:
             Whether this model's is in use. It never is for robots of which one quantity takes
             more than 15 000 operations (somewhere between 16 and 30 joints, depending on the
             robot's shape), on Pythons other than CPython 3.11 and later, and with
-            DYNAMICS_NODE_SPECIALISE=0.
+            DYNAMICS_NODE_SPECIALIZE=0.
 
         """
-        specialisation = self._evaluation.specialisation
+        specialization = self._evaluation.specialization
         if wait:
-            return specialisation.wait(loads)
-        specialisation.begin(loads)
-        return self.is_specialised
+            return specialization.wait(loads)
+        specialization.begin(loads)
+        return self.is_specialized
 
     def _use(self, code):
         # Machine code takes the place of methods. What it does not take, it hands to the
@@ -734,7 +734,7 @@ class RobotModel:
         Returns
         -------
         numpy.ndarray, shape (..., N, 4, 4)
-            Homogeneous transforms, m, in the order of `tree.body_names`.
+            Homogeneous transforms, m, in the order of `tree.moving_joint_names`.
 
         Raises
         ------

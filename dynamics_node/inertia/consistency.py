@@ -24,7 +24,7 @@ class ConsistencyReport:
         Of J; NaN if J has entries that are not finite. A real body exists exactly when it
         is >= 0 (to rounding).
     principal_moments : numpy.ndarray, shape (3,)
-        Principal moments of inertia about the centre of mass, kg m², ascending.
+        Principal moments of inertia about the center of mass, kg m², ascending.
 
     """
 
@@ -98,7 +98,7 @@ def tensor_violations(principal, tolerance):
     Parameters
     ----------
     principal : array_like, shape (3,)
-        Principal moments about the centre of mass, kg m², ascending.
+        Principal moments about the center of mass, kg m², ascending.
     tolerance : float
         kg m²; see `rounding_of`.
 

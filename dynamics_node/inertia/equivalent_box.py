@@ -21,7 +21,7 @@ class EquivalentBox:
     size : numpy.ndarray, shape (3,)
         Edges, m, ascending; 0 across a body that is flat, thin or a point.
     pose : numpy.ndarray, shape (4, 4)
-        Frame of the box (origin in its centre, axes along its edges) → frame of the body, m.
+        Frame of the box (origin in its center, axes along its edges) → frame of the body, m.
 
     """
 

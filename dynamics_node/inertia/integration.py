@@ -39,8 +39,8 @@ def pseudo_inertia_by_integration(density, x_range, y_range, z_range, order=16):
     unit_nodes, unit_weights = _nodes(order)
 
     def on(limits):
-        centre, half = 0.5 * (limits[1] + limits[0]), 0.5 * (limits[1] - limits[0])
-        return zip(centre + half * unit_nodes, half * unit_weights, strict=True)
+        center, half = 0.5 * (limits[1] + limits[0]), 0.5 * (limits[1] - limits[0])
+        return zip(center + half * unit_nodes, half * unit_weights, strict=True)
 
     matrix = np.zeros((4, 4))
     for x, weight_x in on(x_range):

@@ -65,16 +65,16 @@ def axial_moments(sigma):
 
 def steiner(tensor_at_com, mass, com):
     """
-    Return the inertia tensor about the frame's origin from the one about the centre of mass.
+    Return the inertia tensor about the frame's origin from the one about the center of mass.
 
     Parameters
     ----------
     tensor_at_com : array_like, shape (3, 3)
-        Inertia tensor about the centre of mass, kg m².
+        Inertia tensor about the center of mass, kg m².
     mass : float
         Mass, kg.
     com : array_like, shape (3,)
-        Centre of mass r in the frame, m.
+        Center of mass r in the frame, m.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def steiner(tensor_at_com, mass, com):
 
     """
     tensor_at_com = _shaped('inertia tensor', tensor_at_com, (3, 3))
-    r = _shaped('centre of mass', com, (3,))
+    r = _shaped('center of mass', com, (3,))
     return tensor_at_com + mass * (r @ r * np.eye(3) - np.outer(r, r))
 
 
@@ -107,9 +107,9 @@ def pseudo_inertia(mass, com, tensor_at_com, rpy=(0.0, 0.0, 0.0)):
     mass : float
         Mass m, kg.
     com : array_like, shape (3,)
-        Centre of mass in the link frame, m.
+        Center of mass in the link frame, m.
     tensor_at_com : array_like, shape (3, 3)
-        Inertia tensor about the centre of mass, in the inertial frame, kg m².
+        Inertia tensor about the center of mass, in the inertial frame, kg m².
     rpy : array_like, shape (3,)
         Roll, pitch and yaw of the inertial frame in the link frame, rad, fixed axes.
 
@@ -128,7 +128,7 @@ def pseudo_inertia(mass, com, tensor_at_com, rpy=(0.0, 0.0, 0.0)):
     docs/mathematics.md, equations (2) to (4).
 
     """
-    r = _shaped('centre of mass', com, (3,))
+    r = _shaped('center of mass', com, (3,))
     rotation = rotation_from_rpy(rpy)
     tensor = rotation @ _shaped('inertia tensor', tensor_at_com, (3, 3)) @ rotation.T
     matrix = np.empty((4, 4))
@@ -140,7 +140,7 @@ def pseudo_inertia(mass, com, tensor_at_com, rpy=(0.0, 0.0, 0.0)):
 
 def mass_and_com(matrix):
     """
-    Return mass and centre of mass from a pseudo-inertia matrix.
+    Return mass and center of mass from a pseudo-inertia matrix.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def mass_and_com(matrix):
     mass : float
         kg.
     com : numpy.ndarray, shape (3,)
-        In the same frame, m; zeros for a body without mass, which has no centre.
+        In the same frame, m; zeros for a body without mass, which has no center.
 
     Raises
     ------
@@ -167,7 +167,7 @@ def mass_and_com(matrix):
 
 def inertia_tensor_at_com(matrix):
     """
-    Return the inertia tensor about the centre of mass from a pseudo-inertia matrix.
+    Return the inertia tensor about the center of mass from a pseudo-inertia matrix.
 
     Parameters
     ----------

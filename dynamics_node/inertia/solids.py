@@ -17,7 +17,7 @@ def cylinder(mass, radius, length, transform=None):
     radius, length : float
         m, > 0.
     transform : array_like, shape (4, 4), optional
-        Frame of the cylinder (origin in its centre, axis z) → frame of the answer.
+        Frame of the cylinder (origin in its center, axis z) → frame of the answer.
 
     Returns
     -------
@@ -50,7 +50,7 @@ def box(mass, size, transform=None):
     size : array_like, shape (3,)
         Edge lengths along x, y, z, m, > 0.
     transform : array_like, shape (4, 4), optional
-        Frame of the box (origin in its centre) → frame of the answer.
+        Frame of the box (origin in its center) → frame of the answer.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def sphere(mass, radius, transform=None):
     radius : float
         m, > 0.
     transform : array_like, shape (4, 4), optional
-        Frame of the sphere (origin in its centre) → frame of the answer.
+        Frame of the sphere (origin in its center) → frame of the answer.
 
     Returns
     -------

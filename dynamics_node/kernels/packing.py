@@ -40,24 +40,24 @@ def pack(tree, gravity, inertia=None, rotor_inertia=0.0):
         One row per body; the last row holds gravity in its first three columns.
 
     """
-    count = len(tree.body_names)
+    count = len(tree.moving_joint_names)
     structure = np.empty((count, 3), dtype=np.int64)
     structure[:, PARENT] = tree.parent
-    structure[:, KIND] = tree.kind
-    structure[:, COORDINATE] = tree.coordinate
+    structure[:, KIND] = tree.joint_type
+    structure[:, COORDINATE] = tree.q_index
     numbers = np.zeros((count + 1, WIDTH))
     body = numbers[:count]
-    rotation = tree.placement[:, :3, :3].reshape(count, 9)
+    rotation = tree.joint_placement[:, :3, :3].reshape(count, 9)
     # What is lost beside 1 by rounding is zero: rpy="1.5707963267948966 0 0" means a right angle,
     # though the cosine of that number is 6e-17.
     body[:, ROTATION:TRANSLATION] = np.where(np.abs(rotation) < 2.0**-53, 0.0, rotation)
-    body[:, TRANSLATION:AXIS] = tree.placement[:, :3, 3]
+    body[:, TRANSLATION:AXIS] = tree.joint_placement[:, :3, 3]
     body[:, AXIS:INERTIA] = tree.axis
     body[:, INERTIA:MULTIPLIER] = ten_numbers(tree.inertia if inertia is None else inertia)
     body[:, MULTIPLIER] = tree.multiplier
     body[:, OFFSET] = tree.offset
     rotors = np.broadcast_to(rotor_inertia, (len(tree.joint_names),))
-    body[:, ROTOR] = np.where(tree.is_independent, rotors[tree.coordinate], 0.0)
+    body[:, ROTOR] = np.where(tree.is_independent, rotors[tree.q_index], 0.0)
     numbers[count, :3] = gravity
     structure.flags.writeable = numbers.flags.writeable = False
     return structure, numbers

@@ -17,7 +17,7 @@ Every 4x4 matrix has few different numbers, and only those are kept, one row per
 
 The formulas are written once, in plain arithmetic, and run in three ways: compiled for every
 robot at once (the functions at the top), interpreted, and on symbols, which turns them into
-straight-line code for one robot (`specialised`). So a formula may not ask what a number is.
+straight-line code for one robot (`specialized`). So a formula may not ask what a number is.
 
 All of it is one file, because numba's cache on disk does not notice a change in another one.
 

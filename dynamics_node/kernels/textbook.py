@@ -33,8 +33,8 @@ def link_transforms(tree, q):
         ddA[k, i, j] = ∂²A_k/∂q_i∂q_j.
 
     """
-    count = len(tree.body_names)
-    positions = tree.multiplier * q[tree.coordinate] + tree.offset
+    count = len(tree.moving_joint_names)
+    positions = tree.multiplier * q[tree.q_index] + tree.offset
     A = np.zeros((count, 4, 4))
     dA = np.zeros((count, count, 4, 4))
     ddA = np.zeros((count, count, count, 4, 4))
@@ -151,7 +151,7 @@ def coriolis_matrix(tree, q, qd):
 
 def gravity_torque(tree, q, gravity):
     """
-    Return G with the centre of mass as a point, (r, 1).
+    Return G with the center of mass as a point, (r, 1).
 
     Parameters
     ----------
@@ -220,14 +220,15 @@ def _product(tree, chain, positions, orders):
     # differentiated orders[i] times.
     result = np.eye(4)
     for i in chain:
-        result = result @ tree.placement[i] @ _motion(tree, i, positions[i], orders.get(i, 0))
+        motion = _motion(tree, i, positions[i], orders.get(i, 0))
+        result = result @ tree.joint_placement[i] @ motion
     return result
 
 
 def _motion(tree, i, position, order):
     # E(position) and its derivatives: a slide, or Rodrigues' rotation.
     hat = np.zeros((4, 4))
-    if tree.kind[i] == PRISMATIC:
+    if tree.joint_type[i] == PRISMATIC:
         hat[:3, 3] = tree.axis[i]
         return (np.eye(4) + position * hat, hat, np.zeros((4, 4)))[order]
     x, y, z = tree.axis[i]

@@ -44,16 +44,16 @@ def build_tree(description):
     tree = KinematicTree(
         root=description.root,
         joint_names=tuple(index),
-        body_names=tuple(joint.name for joint in moving),
+        moving_joint_names=tuple(joint.name for joint in moving),
         parent=np.array([links[joint.parent].body for joint in moving], dtype=np.int64),
-        kind=np.array(
+        joint_type=np.array(
             [PRISMATIC if joint.kind == 'prismatic' else REVOLUTE for joint in moving],
             dtype=np.int64,
         ),
-        coordinate=np.array([index[leader] for leader, _, _ in resolved], dtype=np.int64),
+        q_index=np.array([index[leader] for leader, _, _ in resolved], dtype=np.int64),
         multiplier=np.array([multiplier for _, multiplier, _ in resolved], dtype=float),
         offset=np.array([offset for _, _, offset in resolved], dtype=float),
-        placement=_stack(
+        joint_placement=_stack(
             [links[joint.parent].placement @ joint.placement for joint in moving], (4, 4)
         ),
         axis=_stack([joint.axis for joint in moving], (3,)),
@@ -123,7 +123,7 @@ def _refuse_overflow(tree):
         f'joint {name}: {what} of all joints that it mimics in turn: expected at most '
         f'{LARGEST:g}, got {value:g}'
         for what in ('multiplier', 'offset')
-        for name, value in zip(tree.body_names, getattr(tree, what), strict=True)
+        for name, value in zip(tree.moving_joint_names, getattr(tree, what), strict=True)
         if not abs(value) <= LARGEST
     ]
     if problems:

@@ -26,7 +26,7 @@ def tip_link(tree, description):
 
     The walk along the moving bodies follows the heavier branch and ends where only light ones
     are left, compared with the bodies from the base to there. Of the links of that body it takes
-    one in which a chain of fixed joints ends and that is called a tool centre, a tool or a hand;
+    one in which a chain of fixed joints ends and that is called a tool center, a tool or a hand;
     if there is none, one that is called so; and if there is none, the last.
 
     Parameters
@@ -74,7 +74,7 @@ def _last_body(tree, child):
         is_branch = len(children) > 1 and behind[heaviest] < _LIGHT * before
         # Its own names count: what is fixed to a wrist may be called finger, too. A robot that
         # weighs nothing has fingers as well.
-        name = tree.body_names[heaviest]
+        name = tree.moving_joint_names[heaviest]
         is_finger = behind[heaviest] <= _LIGHT_FINGER * before and _is_finger(name, child[name])
         if body >= 0 and (is_branch or is_finger):
             return body

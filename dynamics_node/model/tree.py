@@ -33,7 +33,7 @@ class KinematicTree:
 
     Body k is the child link of movable joint k with everything that fixed joints attach to it.
     Its frame is the child link's frame. A parent comes before its children. Body k stands at
-    q_k = multiplier[k] * q[coordinate[k]] + offset[k].
+    q_k = multiplier[k] * q[q_index[k]] + offset[k].
 
     Attributes
     ----------
@@ -41,17 +41,17 @@ class KinematicTree:
         Name of the root link; its frame is the base frame.
     joint_names : tuple of str
         The n independent joints in the order of the URDF: the order of q.
-    body_names : tuple of str
+    moving_joint_names : tuple of str
         The N movable joints in the order of the rows below.
     parent : numpy.ndarray of int, shape (N,)
         Row of the parent body, -1 for the base.
-    kind : numpy.ndarray of int, shape (N,)
+    joint_type : numpy.ndarray of int, shape (N,)
         REVOLUTE or PRISMATIC.
-    coordinate : numpy.ndarray of int, shape (N,)
+    q_index : numpy.ndarray of int, shape (N,)
         Index into q of the joint that this one is, or follows.
     multiplier, offset : numpy.ndarray, shape (N,)
         1 and 0 but for mimic joints; rad or m.
-    placement : numpy.ndarray, shape (N, 4, 4)
+    joint_placement : numpy.ndarray, shape (N, 4, 4)
         Joint frame at position 0 → parent body frame, m.
     axis : numpy.ndarray, shape (N, 3)
         Unit vectors in the joint frame.
@@ -78,13 +78,13 @@ class KinematicTree:
 
     root: str
     joint_names: tuple
-    body_names: tuple
+    moving_joint_names: tuple
     parent: np.ndarray
-    kind: np.ndarray
-    coordinate: np.ndarray
+    joint_type: np.ndarray
+    q_index: np.ndarray
     multiplier: np.ndarray
     offset: np.ndarray
-    placement: np.ndarray
+    joint_placement: np.ndarray
     axis: np.ndarray
     inertia: np.ndarray
     base_inertia: np.ndarray
@@ -104,7 +104,7 @@ class KinematicTree:
     def is_independent(self):
         """Which bodies' joints are independent, bool, shape (N,); the others mimic one."""
         independent = set(self.joint_names)
-        return np.array([name in independent for name in self.body_names], dtype=bool)
+        return np.array([name in independent for name in self.moving_joint_names], dtype=bool)
 
     @property
     def mimic_matrix(self):
@@ -116,6 +116,6 @@ class KinematicTree:
         docs/mathematics.md, equation (19).
 
         """
-        matrix = np.zeros((len(self.body_names), len(self.joint_names)))
-        matrix[np.arange(len(self.body_names)), self.coordinate] = self.multiplier
+        matrix = np.zeros((len(self.moving_joint_names), len(self.joint_names)))
+        matrix[np.arange(len(self.moving_joint_names)), self.q_index] = self.multiplier
         return matrix

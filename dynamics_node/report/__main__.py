@@ -67,7 +67,7 @@ def _show(report, options):
 
 
 def _make(options):
-    # numba takes a second: --help and a misspelt path need not wait for it.
+    # numba takes a second: --help and a misspelled path need not wait for it.
     source = sys.stdin.buffer.read() if options.robot == '-' else _path(options.robot)
     arguments = {
         'gravity': options.gravity,

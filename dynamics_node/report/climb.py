@@ -168,8 +168,8 @@ def _kinds(tree):
     # Of each coordinate: whether it slides, and whether no other joint mimics it.
     slides = np.zeros(len(tree.joint_names), dtype=bool)
     for body in np.flatnonzero(tree.is_independent):
-        slides[tree.coordinate[body]] = tree.kind[body] == PRISMATIC
-    followers = np.bincount(tree.coordinate, minlength=len(tree.joint_names))
+        slides[tree.q_index[body]] = tree.joint_type[body] == PRISMATIC
+    followers = np.bincount(tree.q_index, minlength=len(tree.joint_names))
     return slides, followers == 1
 
 
@@ -183,7 +183,7 @@ def _related(tree):
     related: list[set] = [set() for _ in tree.joint_names]
     for body, chain in enumerate(chains):
         for ancestor in chain:
-            here, there = int(tree.coordinate[body]), int(tree.coordinate[ancestor])
+            here, there = int(tree.q_index[body]), int(tree.q_index[ancestor])
             related[here].add(there)
             related[there].add(here)
     return [sorted(coordinates) for coordinates in related]

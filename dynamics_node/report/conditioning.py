@@ -37,8 +37,10 @@ def conditioning_entry(study):
     worst = study.positions[int(np.argmax(numbers))]
     vector = np.linalg.eigh(np.nan_to_num(model.mass_matrix(worst)))[1][:, 0]
     slides = {
-        int(model.tree.coordinate[body])
-        for body in np.flatnonzero((model.tree.kind == PRISMATIC) & model.tree.is_independent)
+        int(model.tree.q_index[body])
+        for body in np.flatnonzero(
+            (model.tree.joint_type == PRISMATIC) & model.tree.is_independent
+        )
     }
     return ConditioningEntry(
         median=float(np.median(numbers)),

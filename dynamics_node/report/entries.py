@@ -45,12 +45,12 @@ def body_entries(tree, description):
 
     """
     child = {joint.name: joint.child for joint in description.joints}
-    members: list[list] = [[] for _ in tree.body_names]
+    members: list[list] = [[] for _ in tree.moving_joint_names]
     for name, frame in tree.links.items():
-        if frame.body >= 0 and name != child[tree.body_names[frame.body]]:
+        if frame.body >= 0 and name != child[tree.moving_joint_names[frame.body]]:
             members[frame.body].append(name)
     entries = []
-    for body, joint in enumerate(tree.body_names):
+    for body, joint in enumerate(tree.moving_joint_names):
         mass, com = mass_and_com(tree.inertia[body])
         found = consistency_report(tree.inertia[body])
         parent = tree.parent[body]
@@ -58,7 +58,7 @@ def body_entries(tree, description):
             BodyEntry(
                 joint,
                 child[joint],
-                None if parent < 0 else tree.body_names[parent],
+                None if parent < 0 else tree.moving_joint_names[parent],
                 tuple(members[body]),
                 mass,
                 tuple(com.tolist()) if mass else None,

@@ -25,7 +25,7 @@ def sampling_ranges(model):
 
     """
     ranges, notes = np.array(model.position_limits), []
-    kinds = dict(zip(model.tree.body_names, model.tree.kind, strict=True))
+    kinds = dict(zip(model.tree.moving_joint_names, model.tree.joint_type, strict=True))
     for i, name in enumerate(model.joint_names):
         lower, upper = ranges[i]
         if np.isfinite([lower, upper]).all():

@@ -139,10 +139,10 @@ class Study:
     def rounding(self):
         """What is smaller than this is no torque but rounding, N m or N."""
         tree = self.model.tree
-        lengths = np.linalg.norm(tree.placement[:, :3, 3], axis=1).sum() + np.abs(
+        lengths = np.linalg.norm(tree.joint_placement[:, :3, 3], axis=1).sum() + np.abs(
             tree.inertia[:, :3, 3]
-        ).sum() / max(self.model.total_mass, 1e-300)
-        weight = self.model.total_mass * float(np.linalg.norm(self.model.gravity))
+        ).sum() / max(self.model.moving_mass, 1e-300)
+        weight = self.model.moving_mass * float(np.linalg.norm(self.model.gravity))
         return _ROUNDING * weight * max(lengths, 1.0)
 
     def worst_with(self, model, joint):
@@ -191,7 +191,7 @@ class Study:
         tree, found = self.model.tree, []
         body = tree.links[link].body
         while body >= 0:
-            joint = int(tree.coordinate[body])
+            joint = int(tree.q_index[body])
             if joint not in found:
                 found.append(joint)
             body = tree.parent[body]

@@ -64,7 +64,7 @@ class EffortAtRest:
         Returns
         -------
         bool
-            Whether a judgement has just been made; see `doubt`.
+            Whether a judgment has just been made; see `doubt`.
 
         """
         if np.abs(velocity).max() > AT_REST:

@@ -407,7 +407,7 @@ class RejectedStateError(DynamicsError):
         super().__init__(message)
 
 
-# However short the timeout: clocks of two machines that are synchronised differ by less.
+# However short the timeout: clocks of two machines that are synchronized differ by less.
 SMALLEST_TOLERANCE = 0.1
 
 
@@ -459,7 +459,7 @@ class StampTolerance:
         raise RejectedStateError(
             'stamp',
             f'expected a stamp within {self.seconds:g} s of the clock, got one '
-            f'{abs(late) * 1e-9:.3f} s {side}: synchronise the clocks of both machines, and '
+            f'{abs(late) * 1e-9:.3f} s {side}: synchronize the clocks of both machines, and '
             'set use_sim_time on both sides or on neither',
         )
 

@@ -15,9 +15,9 @@ class Inertial:
     mass : float
         kg, >= 0.
     placement : numpy.ndarray, shape (4, 4)
-        Inertial frame → link frame; its origin is the centre of mass, m.
+        Inertial frame → link frame; its origin is the center of mass, m.
     tensor : numpy.ndarray, shape (3, 3)
-        Inertia about the centre of mass, in the inertial frame, kg m².
+        Inertia about the center of mass, in the inertial frame, kg m².
 
     """
 

@@ -285,7 +285,7 @@ def _axis(joint, is_missing):
     if not 1e-9 < length < 1e9:
         return axis, [f'{where} has length {length:.3g}, must be a direction'], []
     if abs(length - 1.0) > 1e-6:
-        return axis / length, [], [f'{where} has length {length:.6g}, it is normalised to 1']
+        return axis / length, [], [f'{where} has length {length:.6g}, it is normalized to 1']
     return axis / length, [], []
 
 

@@ -1,7 +1,7 @@
 """
 Drawing: what the dynamics of a robot look like, as plain shapes. No ROS, no window.
 
-What may change here: shapes, sizes and colours. Where things are comes from the model, and
+What may change here: shapes, sizes and colors. Where things are comes from the model, and
 `markers/`, which sends them to RViz, only translates.
 
 """

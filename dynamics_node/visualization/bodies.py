@@ -7,7 +7,7 @@ from .shapes import BOX, quaternions, Shape, SPHERE, TEXT
 from ..errors import InertiaError
 from ..inertia import equivalent_box, mass_and_com
 
-CENTRES, BOXES, PROBLEMS = 'centre_of_mass', 'inertia', 'problems'
+CENTRES, BOXES, PROBLEMS = 'center_of_mass', 'inertia', 'problems'
 # A sphere is at least that much of the one of the heaviest body: what is there must be seen.
 _SMALLEST = 0.08
 
@@ -29,7 +29,7 @@ class Bodies:
         sizes,
         *,
         groups=(CENTRES, BOXES),
-        colour=(colors.BODY, colors.INERTIA),
+        color=(colors.BODY, colors.INERTIA),
     ):
         """
         Look at the bodies once.
@@ -45,12 +45,12 @@ class Bodies:
         sizes : Sizes
         groups : (str, str)
             Of the spheres and of the boxes.
-        colour : (tuple, tuple)
+        color : (tuple, tuple)
             Of the spheres and of the boxes.
 
         """
         self._sizes = sizes
-        self._groups, self._colours = groups, colour
+        self._groups, self._colors = groups, color
         self._names, self._rows = list(names), np.array(rows, dtype=np.int64)
         masses, coms = zip(*map(mass_and_com, matrices), strict=True) if len(names) else ((), ())
         self._masses = np.array(masses, dtype=float)
@@ -101,7 +101,7 @@ class Bodies:
         for k, (place, turn) in enumerate(zip(places, turns, strict=True)):
             if self._masses[k] > 0.0:
                 yield Shape(
-                    self._groups[0], k, SPHERE, self._sphere_size[k], self._colours[0], place
+                    self._groups[0], k, SPHERE, self._sphere_size[k], self._colors[0], place
                 )
             if k in self._box_size:
                 yield Shape(
@@ -109,7 +109,7 @@ class Bodies:
                     k + self._offset,
                     BOX,
                     self._box_size[k],
-                    self._colours[1],
+                    self._colors[1],
                     place,
                     tuple(turn),
                 )

@@ -1,4 +1,4 @@
-"""Colours: red, green, blue, opacity."""
+"""Colors: red, green, blue, opacity."""
 
 BODY = (0.98, 0.75, 0.15, 1.0)
 PAYLOAD = (0.85, 0.35, 0.95, 1.0)
@@ -15,7 +15,7 @@ OVER_THE_LIMIT = (1.0, 0.0, 0.0, 1.0)
 
 def of_load(load):
     """
-    Return the colour of a torque: green, over yellow at half the limit, to red.
+    Return the color of a torque: green, over yellow at half the limit, to red.
 
     Parameters
     ----------

@@ -102,7 +102,7 @@ class Picture:
             (frame.body,),
             self._sizes,
             groups=(PAYLOAD, PAYLOAD),
-            colour=(colors.PAYLOAD, colors.PAYLOAD_INERTIA),
+            color=(colors.PAYLOAD, colors.PAYLOAD_INERTIA),
         )
 
     def _gravity(self, gravity):

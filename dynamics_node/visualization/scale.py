@@ -9,9 +9,9 @@ from ..model.tree import PRISMATIC
 # Of the reach: the sphere of the heaviest body, the largest arc around a joint, the arrow of
 # 9.81 m/s², the height of a text, and the thinnest that a solid is drawn.
 HEAVIEST, ARC, GRAVITY, TEXT, THINNEST = 0.032, 0.09, 0.2, 0.02, 5e-4
-# A joint nearer than this part of the reach shares its place with its neighbour.
+# A joint nearer than this part of the reach shares its place with its neighbor.
 _SAME_PLACE = 0.01
-# Of the distance to the nearest neighbour: as large an arc may be. And of ARC: it is never
+# Of the distance to the nearest neighbor: as large an arc may be. And of ARC: it is never
 # smaller.
 _ROOM, _LEAST = 0.6, 0.5
 # m: what a description says in place of "without limit".
@@ -93,7 +93,9 @@ def reach(tree):
     """
     length = np.zeros(len(tree.parent) + 1)  # the last one is the base
     for k, parent in enumerate(tree.parent):
-        length[k] = length[parent] + np.linalg.norm(tree.placement[k, :3, 3]) + _travel(tree, k)
+        length[k] = (
+            length[parent] + np.linalg.norm(tree.joint_placement[k, :3, 3]) + _travel(tree, k)
+        )
     to_masses = [
         length[k] + np.linalg.norm(J[:3, 3]) / J[3, 3]
         for k, J in enumerate(tree.inertia)
@@ -105,8 +107,8 @@ def reach(tree):
 
 def _travel(tree, k):
     # Of a prismatic joint with limits; rails are long, and their joints are at one end.
-    low, high = tree.limits[tree.coordinate[k], :2]
-    travel = high - low if tree.kind[k] == PRISMATIC else 0.0
+    low, high = tree.limits[tree.q_index[k], :2]
+    travel = high - low if tree.joint_type[k] == PRISMATIC else 0.0
     return travel * abs(tree.multiplier[k]) if travel < _FAR else 0.0
 
 
@@ -128,7 +130,7 @@ def arc_radii(tree, longest):
     """
     room = np.full(len(tree.parent), np.inf)
     for k, parent in enumerate(tree.parent):
-        distance = np.linalg.norm(tree.placement[k, :3, 3])
+        distance = np.linalg.norm(tree.joint_placement[k, :3, 3])
         if parent >= 0 and distance > _SAME_PLACE * longest:
             room[[k, parent]] = np.minimum(room[[k, parent]], distance)
     return np.clip(_ROOM * room, _LEAST * ARC * longest, ARC * longest)

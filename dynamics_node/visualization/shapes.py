@@ -24,7 +24,7 @@ class Shape(NamedTuple):
         m, > 0. Of a solid along its axes; of a line its width, three times; of an arrow the
         diameters of shaft and head, and the length of the head; of a text the width of a blank
         and its height, twice.
-    colour : tuple of float, length 4
+    color : tuple of float, length 4
         Red, green, blue, opacity, 0 to 1.
     position : tuple of float, length 3
         m, base frame.
@@ -40,7 +40,7 @@ class Shape(NamedTuple):
     number: int
     kind: str
     size: tuple
-    colour: tuple
+    color: tuple
     position: tuple
     orientation: tuple = (0.0, 0.0, 0.0, 1.0)
     points: tuple = ()

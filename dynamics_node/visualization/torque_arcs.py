@@ -40,13 +40,13 @@ class Torques:
 
         """
         self._names, self._sizes = list(names), sizes
-        rows = [tree.body_names.index(name) for name in names]
+        rows = [tree.moving_joint_names.index(name) for name in names]
         self._rows = np.array(rows, dtype=np.int64)
         self._parents = tree.parent[self._rows]
-        self._is_prismatic = [bool(tree.kind[row] == PRISMATIC) for row in rows]
+        self._is_prismatic = [bool(tree.joint_type[row] == PRISMATIC) for row in rows]
         self._radius = [float(sizes.arcs[row]) for row in rows]
         self._frames = np.array(
-            [tree.placement[row, :3, :3] @ frame_around(tree.axis[row]) for row in rows]
+            [tree.joint_placement[row, :3, :3] @ frame_around(tree.axis[row]) for row in rows]
         ).reshape(-1, 3, 3)
         self._lift = _lifts(tree, rows, sizes)
 
@@ -135,12 +135,12 @@ class Torques:
         ]
 
     def _line(self, group, i, load, is_unlimited, place, turn):
-        colour = colors.UNLIMITED if is_unlimited else colors.of_load(abs(load))
+        color = colors.UNLIMITED if is_unlimited else colors.of_load(abs(load))
         width = _WIDTHS[group] * self._radius[i]
         points = (_arrow if self._is_prismatic[i] else _arc)(
             _PLACES[group] * self._radius[i], load, self._radius[i]
         )
-        return Shape(group, i, LINE, (width,) * 3, colour, place, turn, tuple(points))
+        return Shape(group, i, LINE, (width,) * 3, color, place, turn, tuple(points))
 
     def _text(self, i, value, limit):
         unit = 'N' if self._is_prismatic[i] else 'N m'
@@ -152,7 +152,7 @@ def _lifts(tree, rows, sizes):
     # Joints of a wrist are nearly at one place: each one's text is above that of the one before.
     lines = np.zeros(len(tree.parent) + 1)  # the last one is the base
     for k, parent in enumerate(tree.parent):
-        if np.linalg.norm(tree.placement[k, :3, 3]) < _NEAR * sizes.reach and parent >= 0:
+        if np.linalg.norm(tree.joint_placement[k, :3, 3]) < _NEAR * sizes.reach and parent >= 0:
             lines[k] = lines[parent] + 1
     return [float(lines[row] * _LINE * sizes.text) for row in rows]
 

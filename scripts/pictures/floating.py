@@ -81,7 +81,7 @@ def draw(outcome, arm, robot, path):
     renderer.close()
     _plot(figure.add_subplot(grid[1, :]), outcome)
     figure.savefig(path)
-    # 128 colours are enough, and a third of the file.
+    # 128 colors are enough, and a third of the file.
     with Image.open(path) as picture:
         picture.convert('RGB').quantize(
             128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE
@@ -130,7 +130,7 @@ def film(outcome, arm, robot, path):
 
 
 def _panels(outcome):
-    """Return title, colour, positions on the way and last position of the four panels."""
+    """Return title, color, positions on the way and last position of the four panels."""
     fall, push = (_phase(outcome, name) for name in ('falls, node off', 'pushed'))
     watched = _phase(outcome, 'held there')
     return [

@@ -92,7 +92,7 @@ class ArmRenderer:
         covered = (self._renderer.render()[:, :, 0] >= 0).astype(float)[:, :, None]
         self._renderer.disable_segmentation_rendering()
         alpha = _averaged(covered)
-        # The colour of the covered part alone, so that no edge of the background is left.
+        # The color of the covered part alone, so that no edge of the background is left.
         return np.concatenate((_averaged(color * covered) / np.maximum(alpha, 1e-9), alpha), 2)
 
 

@@ -111,7 +111,7 @@ def draw(robot, path):
         ),
         (right, payload, 'YlGnBu', (5, 6, 7, 8, 9), 'kg', 'and leaves for a payload'),
     ):
-        # At the top everything stands on the bearings: no colours for 60 kg there.
+        # At the top everything stands on the bearings: no colors for 60 kg there.
         mesh = axis.pcolormesh(
             reach,
             height,

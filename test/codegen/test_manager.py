@@ -16,7 +16,7 @@ import weakref
 
 from dynamics_node import codegen, RobotModel, SingularMassMatrixError
 from dynamics_node.codegen import compile, worker
-from dynamics_node.codegen.manager import Specialisation
+from dynamics_node.codegen.manager import Specialization
 from dynamics_node.dynamics.batch import Evaluation
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def compiled(tmp_path_factory):
     place = tmp_path_factory.mktemp('compiled')
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('DYNAMICS_NODE_CACHE_DIR', str(place))
-        assert RobotModel.from_urdf(SMALL).specialise(loads=True)
+        assert RobotModel.from_urdf(SMALL).specialize(loads=True)
     return place
 
 
@@ -49,7 +49,7 @@ def small(compiled, folder):
     """SMALL with all its machine code, from disk."""
     shutil.copytree(compiled, folder, dirs_exist_ok=True)
     model = RobotModel.from_urdf(SMALL)
-    assert model.is_specialised
+    assert model.is_specialized
     return model
 
 
@@ -66,33 +66,33 @@ def test_a_model_that_is_used_often_gets_machine_code_by_itself():
     q = np.array([0.3])
     expected = model.gravity_torque(q)
     end = time.monotonic() + 60
-    while not model.is_specialised and time.monotonic() < end:
+    while not model.is_specialized and time.monotonic() < end:
         np.testing.assert_allclose(model.gravity_torque(q), expected, rtol=1e-14)
-    assert model.is_specialised
+    assert model.is_specialized
     np.testing.assert_allclose(model.gravity_torque(q), expected, rtol=1e-14)
 
 
 def test_a_model_that_is_used_once_does_not():
     model = RobotModel.from_urdf(PENDULUM)
     model.gravity_torque([0.3])
-    assert model._evaluation.specialisation._process is None
+    assert model._evaluation.specialization._process is None
 
 
 def test_the_next_model_of_the_robot_has_it_at_once():
-    assert not RobotModel.from_urdf(PENDULUM).is_specialised
-    assert RobotModel.from_urdf(PENDULUM).specialise()
+    assert not RobotModel.from_urdf(PENDULUM).is_specialized
+    assert RobotModel.from_urdf(PENDULUM).specialize()
     model = RobotModel.from_urdf(PENDULUM)
-    assert model.is_specialised
+    assert model.is_specialized
     assert inspect.isbuiltin(model.dynamics)
 
 
 def test_models_under_another_gravity_get_it_too():
     model = RobotModel.from_urdf(PENDULUM)
     before = model.with_gravity((0.0, 0.0, 0.0))
-    assert model.specialise()
+    assert model.specialize()
     after = model.with_gravity((0.0, 0.0, -1.0))
     for other in (before, after):
-        assert other.is_specialised
+        assert other.is_specialized
         assert inspect.isbuiltin(other.gravity_torque)
     np.testing.assert_array_equal(before.gravity_torque(np.array([0.3])), [0.0])
 
@@ -100,36 +100,36 @@ def test_models_under_another_gravity_get_it_too():
 def test_it_can_be_asked_for_without_waiting():
     model = RobotModel.from_urdf(PENDULUM)
     began = time.process_time()
-    model.specialise(wait=False)
+    model.specialize(wait=False)
     # Neither waited for nor made here: either takes a second of work.
-    assert not model.is_specialised
+    assert not model.is_specialized
     assert time.process_time() - began < 0.1
-    assert model.specialise(wait=True)
+    assert model.specialize(wait=True)
 
 
 def test_while_enough_others_are_being_made_it_is_asked_for_again(monkeypatch):
     monkeypatch.setattr(worker, '_MOST_AT_ONCE', 0)
     model = RobotModel.from_urdf(PENDULUM)
-    model.specialise(wait=False)
-    assert model._evaluation.specialisation._process is None
+    model.specialize(wait=False)
+    assert model._evaluation.specialization._process is None
     monkeypatch.setattr(worker, '_MOST_AT_ONCE', 1)
     end = time.monotonic() + 60
-    while not model.is_specialised and time.monotonic() < end:
+    while not model.is_specialized and time.monotonic() < end:
         model.gravity_torque([0.3])
-    assert model.is_specialised
+    assert model.is_specialized
 
 
 def test_it_can_be_switched_off(monkeypatch):
-    monkeypatch.setenv('DYNAMICS_NODE_SPECIALISE', '0')
+    monkeypatch.setenv('DYNAMICS_NODE_SPECIALIZE', '0')
     model = RobotModel.from_urdf(PENDULUM)
-    assert not model.specialise()
+    assert not model.specialize()
     assert not inspect.isbuiltin(model.dynamics)
     assert np.isfinite(model.gravity_torque([0.3])).all()
 
 
 def test_a_robot_with_very_many_joints_goes_on_with_the_general_kernel():
     model = RobotModel.from_urdf(random_urdf(3, joints=60, with_mimic=False))
-    assert not model.specialise()
+    assert not model.specialize()
     assert model.gravity_torque(np.zeros(60)).shape == (60,)
 
 
@@ -143,17 +143,17 @@ def test_a_model_and_its_methods_can_be_copied_and_pickled(duplicate):
     for _ in range(2):
         other = duplicate(model)
         assert other.note == 'mine'
-        assert other.is_specialised == model.is_specialised
+        assert other.is_specialized == model.is_specialized
         np.testing.assert_array_equal(other.gravity_torque(q), model.gravity_torque(q))
         method = duplicate(model.gravity_torque)
         np.testing.assert_allclose(method(q), model.gravity_torque(q), rtol=1e-14)
-        assert model.specialise()
+        assert model.specialize()
 
 
 def test_what_somebody_put_in_the_place_of_a_method_stays():
     model = RobotModel.from_urdf(PENDULUM)
     model.gravity_torque = lambda q: np.zeros(1)
-    assert model.specialise()
+    assert model.specialize()
     np.testing.assert_array_equal(model.gravity_torque(np.array([0.3])), [0.0])
 
 
@@ -164,7 +164,7 @@ def test_whatever_fails_the_general_kernel_goes_on(step, monkeypatch, caplog):
 
     monkeypatch.setattr(codegen, step, fail)
     model = RobotModel.from_urdf(PENDULUM)
-    assert not model.specialise(wait=step != 'start')
+    assert not model.specialize(wait=step != 'start')
     assert np.isfinite(model.gravity_torque([0.3])).all()
     assert 'the general kernel goes on: OSError: as it happens' in caplog.text
 
@@ -175,9 +175,9 @@ def test_a_failing_hand_out_does_not_reach_the_caller(caplog):
             raise AttributeError('no')
 
     model, refusing = RobotModel.from_urdf(PENDULUM), Refusing()
-    assert model.specialise()
-    specialisation = Specialisation(*model._evaluation.packed)
-    specialisation.attach(refusing)
+    assert model.specialize()
+    specialization = Specialization(*model._evaluation.packed)
+    specialization.attach(refusing)
     assert 'the general kernel goes on: AttributeError' in caplog.text
 
 
@@ -198,7 +198,7 @@ class Arm:
 
 for _ in range(10):
     model = RobotModel.from_urdf({str(PENDULUM)!r})
-    assert model.specialise()
+    assert model.specialize()
     Arm(model)
     del model
     gc.collect()
@@ -221,7 +221,7 @@ def test_a_method_of_a_subclass_stays():
             return 2.0 * super().gravity_torque(q)
 
     model, plain = Doubled.from_urdf(PENDULUM), RobotModel.from_urdf(PENDULUM)
-    assert model.specialise()
+    assert model.specialize()
     assert inspect.isbuiltin(model.dynamics)
     np.testing.assert_allclose(model.gravity_torque([0.3]), 2.0 * plain.gravity_torque([0.3]))
 
@@ -229,7 +229,7 @@ def test_a_method_of_a_subclass_stays():
 def test_python_may_end_while_it_is_made(folder):
     script = (
         f'from dynamics_node import RobotModel\n'
-        f'RobotModel.from_urdf({str(PENDULUM)!r}).specialise(wait=False)\n'
+        f'RobotModel.from_urdf({str(PENDULUM)!r}).specialize(wait=False)\n'
     )
     environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
     run = subprocess.run(
@@ -252,12 +252,12 @@ def begun():
     return len(worker._processes)
 
 
-def used_until_specialised(model):
+def used_until_specialized(model):
     q = np.zeros(len(model.joint_names))
     end = time.monotonic() + 60
-    while not model.is_specialised and time.monotonic() < end:
+    while not model.is_specialized and time.monotonic() < end:
         model.gravity_torque(q)
-    assert model.is_specialised
+    assert model.is_specialized
 
 
 def with_random_payload(model, rng):
@@ -271,7 +271,7 @@ def assert_as_the_general_kernel(model, rng):
     general = Evaluation(
         model._evaluation.packed,
         model.joint_names,
-        Specialisation(np.empty((0, 3), dtype=np.int64), np.zeros((1, 28))),
+        Specialization(np.empty((0, 3), dtype=np.int64), np.zeros((1, 28))),
     )
     states = rng.uniform(-2.0, 2.0, (3, 9, len(model.joint_names)))
     batch = (
@@ -305,20 +305,20 @@ def assert_as_the_general_kernel(model, rng):
 def test_a_second_payload_starts_no_compiler():
     model = RobotModel.from_urdf(SMALL)
     rng = np.random.default_rng(5)
-    assert model.specialise()
+    assert model.specialize()
     assert begun() == 0
-    used_until_specialised(with_random_payload(model, rng))
+    used_until_specialized(with_random_payload(model, rng))
     assert begun() == 1
     for _ in range(20):
         other = with_random_payload(model, rng).with_rotor_inertia(rng.uniform(0.0, 1.0))
-        assert other.is_specialised
+        assert other.is_specialized
         assert_as_the_general_kernel(other, rng)
-        used_until_specialised(other)
+        used_until_specialized(other)
     assert begun() == 1
     # Nor does a robot that differs in nothing but its inertia.
     heavier = RobotModel.from_urdf(SMALL.replace('mass value="', 'mass value="1'))
-    assert not heavier.is_specialised
-    assert with_random_payload(heavier, rng).is_specialised
+    assert not heavier.is_specialized
+    assert with_random_payload(heavier, rng).is_specialized
     assert begun() == 1
 
 
@@ -326,10 +326,10 @@ def test_models_that_carried_something_before_it_was_ready_get_it_too():
     model = RobotModel.from_urdf(PENDULUM)
     light, heavy = model.with_payload('rod', 1.0), model.with_payload('rod', 50.0)
     geared = model.with_rotor_inertia(0.3)
-    assert light.specialise()
-    assert heavy.is_specialised
-    assert geared.is_specialised
-    assert not model.is_specialised
+    assert light.specialize()
+    assert heavy.is_specialized
+    assert geared.is_specialized
+    assert not model.is_specialized
     assert (
         len(
             {
@@ -344,9 +344,9 @@ def test_models_that_carried_something_before_it_was_ready_get_it_too():
 def test_that_for_payloads_can_be_asked_for_before_one_comes():
     model = RobotModel.from_urdf(PENDULUM)
     q = np.zeros(1)
-    model.specialise(wait=False, loads=True)
+    model.specialize(wait=False, loads=True)
     assert begun() == 1
-    used_until_specialised(model)
+    used_until_specialized(model)
     # One after the other.
     end = time.monotonic() + 10
     while begun() < 2 and time.monotonic() < end:
@@ -357,13 +357,13 @@ def test_that_for_payloads_can_be_asked_for_before_one_comes():
     # The first model that carries something finds it, and so do all that come later.
     loaded = model.with_payload('rod', 1.0)
     end = time.monotonic() + 10
-    while not loaded.is_specialised and time.monotonic() < end:
+    while not loaded.is_specialized and time.monotonic() < end:
         time.sleep(0.001)
-    assert loaded.is_specialised
-    assert model.with_payload('rod', 2.0).is_specialised
+    assert loaded.is_specialized
+    assert model.with_payload('rod', 2.0).is_specialized
     assert begun() == 2
     again = RobotModel.from_urdf(PENDULUM)
-    assert again.specialise(loads=True)
+    assert again.specialize(loads=True)
     np.testing.assert_array_equal(
         again.with_payload('rod', 1.0).mass_matrix(q), loaded.mass_matrix(q)
     )
@@ -378,15 +378,15 @@ def test_a_new_model_does_not_wait_while_machine_code_is_loaded(small, monkeypat
         assert may_end.wait(60.0)
         return right(*packed)
 
-    specialisation = small._specialisation.for_any_inertia
-    specialisation.code = None
+    specialization = small._specialization.for_any_inertia
+    specialization.code = None
     monkeypatch.setattr(codegen, 'from_disk', slow)
-    thread = threading.Thread(target=specialisation._take)
+    thread = threading.Thread(target=specialization._take)
     thread.start()
     try:
         assert begun_to_load.wait(60.0)
         loaded = small.with_payload('link0', 1.0)
-        assert not loaded.is_specialised
+        assert not loaded.is_specialized
     finally:
         may_end.set()
         thread.join()
@@ -395,10 +395,10 @@ def test_a_new_model_does_not_wait_while_machine_code_is_loaded(small, monkeypat
 
 def test_both_can_be_waited_for():
     model = RobotModel.from_urdf(PENDULUM)
-    assert model.with_payload('rod', 1.0).specialise(loads=True)
-    assert not model.is_specialised
-    assert model.specialise(loads=True)
-    assert model.with_rotor_inertia(1.0).is_specialised
+    assert model.with_payload('rod', 1.0).specialize(loads=True)
+    assert not model.is_specialized
+    assert model.specialize(loads=True)
+    assert model.with_rotor_inertia(1.0).is_specialized
     assert begun() == 0
 
 
@@ -411,7 +411,7 @@ def test_a_payload_and_rotors_on_a_random_tree(seed):
         .with_rotor_inertia(rng.uniform(0.0, 1.0, len(model.joint_names)))
         .with_gravity(rng.normal(0.0, 6.0, 3))
     )
-    assert loaded.specialise()
+    assert loaded.specialize()
     for robot in (loaded, with_random_payload(loaded, rng), loaded.with_rotor_inertia(0.0)):
         assert_as_the_general_kernel(robot, rng)
 
@@ -421,10 +421,10 @@ def test_a_payload_that_is_removed_gives_the_robot_back_to_the_last_bit(small):
     states = rng.uniform(-2.0, 2.0, (2, 9, len(model.joint_names)))
     before, batch = model.dynamics(*states[:, 0]), model.dynamics(*states)
     loaded = model.with_payload('link0', *random_body(rng)).with_rotor_inertia(1.0)
-    assert loaded.is_specialised
+    assert loaded.is_specialized
     assert not np.array_equal(loaded.dynamics(*states).mass_matrix, batch.mass_matrix)
     removed = loaded.with_payload('link0', 0.0).with_rotor_inertia(0.0)
-    assert removed._evaluation.specialisation is model._evaluation.specialisation
+    assert removed._evaluation.specialization is model._evaluation.specialization
     for old, new in zip(
         (*before, *batch),
         (*removed.dynamics(*states[:, 0]), *removed.dynamics(*states)),
@@ -442,17 +442,17 @@ def test_a_link_without_mass_may_become_loaded():
         <child link="tip"/><axis xyz="0 0 1"/></joint></robot>""",
     )
     model = RobotModel.from_urdf(text)
-    assert model.specialise()
+    assert model.specialize()
     rng = np.random.default_rng(12)
     q, qd, tau = rng.uniform(-1.0, 1.0, (3, 3))
     loaded = model.with_payload('tip', *random_body(rng))
-    assert loaded.specialise()
+    assert loaded.specialize()
     assert_as_the_general_kernel(loaded, rng)
     qdd = loaded.forward_dynamics(q, qd, tau)
     np.testing.assert_allclose(loaded.inverse_dynamics(q, qd, qdd), tau, rtol=0, atol=1e-10)
     # The same machine code sees that nothing is there, where only another link is loaded.
     elsewhere = loaded.with_payload('link0', *random_body(rng))
-    assert elsewhere.is_specialised
+    assert elsewhere.is_specialized
     for singular in (model, elsewhere):
         with pytest.raises(SingularMassMatrixError):
             singular.forward_dynamics(q, qd, tau)
@@ -461,10 +461,10 @@ def test_a_link_without_mass_may_become_loaded():
 def test_a_payload_far_heavier_than_the_robot_does_not_spoil_it_for_others(monkeypatch):
     # What is loaded is compared at loads that fit the robot, not at whatever comes first.
     model = RobotModel.from_urdf(random_urdf(4, joints=3, with_mimic=False))
-    assert model.with_payload(model.link_names[-1], 1.0).specialise()
+    assert model.with_payload(model.link_names[-1], 1.0).specialize()
     monkeypatch.setattr(compile, '_loaded', {})
     again = RobotModel.from_urdf(random_urdf(4, joints=3, with_mimic=False))
-    assert again.with_payload(model.link_names[-1], 1e15).is_specialised
+    assert again.with_payload(model.link_names[-1], 1e15).is_specialized
     assert_as_the_general_kernel(
         again.with_payload(model.link_names[-1], 2.0), np.random.default_rng(4)
     )
@@ -474,7 +474,7 @@ def test_a_thousand_payloads_leave_nothing_behind(small):
     model, rng = small, np.random.default_rng(9)
     bodies = [random_body(rng) for _ in range(10)]
     q = rng.uniform(-1.0, 1.0, len(model.joint_names))
-    assert model.with_payload('link0', *bodies[0]).is_specialised
+    assert model.with_payload('link0', *bodies[0]).is_specialized
     processes, codes = begun(), len(compile._loaded)
 
     def load(times):
@@ -493,7 +493,7 @@ def test_a_thousand_payloads_leave_nothing_behind(small):
         assert last() is None
     finally:
         gc.enable()
-    assert len(model._specialisation.for_any_inertia._models) == 0
+    assert len(model._specialization.for_any_inertia._models) == 0
     assert (begun(), len(compile._loaded)) == (processes, codes)
     # A model and its entries take some 10 kB: a thousand would be 10 MB.
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4_000
@@ -527,12 +527,12 @@ def test_a_loaded_model_can_be_pickled(ready, request):
     rng = np.random.default_rng(6)
     loaded = with_random_payload(model, rng).with_rotor_inertia(0.2)
     other = pickle.loads(pickle.dumps(loaded))
-    assert other.is_specialised == ready
+    assert other.is_specialized == ready
     q = np.full(len(model.joint_names), 0.3)
     np.testing.assert_array_equal(other.mass_matrix(q), loaded.mass_matrix(q))
-    assert other._specialisation.for_any_inertia is other._evaluation.specialisation
-    assert with_random_payload(other, rng).specialise()
-    assert other.is_specialised
+    assert other._specialization.for_any_inertia is other._evaluation.specialization
+    assert with_random_payload(other, rng).specialize()
+    assert other.is_specialized
     assert_as_the_general_kernel(other, rng)
 
 

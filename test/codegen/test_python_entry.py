@@ -29,7 +29,7 @@ QUANTITIES = {
 @pytest.fixture(scope='module')
 def model():
     model = RobotModel.from_urdf(random_urdf(11, joints=4, with_mimic=False, prismatic=0.0))
-    assert model.specialise()
+    assert model.specialize()
     return model
 
 
@@ -114,7 +114,7 @@ CHANGES = {
 @pytest.mark.parametrize('change', CHANGES)
 def test_an_answer_that_was_changed_is_not_given_out_again(change):
     model = RobotModel.from_urdf(random_urdf(11, joints=4, with_mimic=False, prismatic=0.0))
-    assert model.specialise()
+    assert model.specialize()
     q = np.array([0.1, 0.2, 0.3, 0.4])
     expected = model._evaluation.mass_matrix(q)
     for _ in range(8):
@@ -222,7 +222,7 @@ def test_a_robot_without_inertia_behind_a_joint_is_refused_as_ever():
     )
     model = RobotModel.from_urdf(text)
     states = np.random.default_rng(1).uniform(-1.0, 1.0, (3, 3))
-    assert model.specialise()
+    assert model.specialize()
     with pytest.raises(SingularMassMatrixError):
         model.forward_dynamics(*states)
     np.testing.assert_array_equal(model.gravity_torque(states[0])[-1], 0.0)
@@ -268,7 +268,7 @@ def test_a_function_outlives_its_model_and_the_model_is_freed(model, arguments):
 
 def test_a_function_keeps_the_payload_that_it_was_made_with(model, arguments):
     carrying = [model.with_payload('link3', mass) for mass in (1.0, 2.0)]
-    assert carrying[0].specialise()
+    assert carrying[0].specialize()
     functions = [loaded.gravity_torque for loaded in carrying]
     assert all(inspect.isbuiltin(function) for function in functions)
     expected = [loaded._evaluation.gravity_torque(arguments[0]) for loaded in carrying]

@@ -12,7 +12,7 @@ from support.robots import public_robot
 pytestmark = needs_machine_code
 
 # Compiling takes a second or two each; the general kernel is held to this on all robots, and
-# `kernels/specialised` holds the machine code to the general kernel on random trees.
+# `kernels/specialized` holds the machine code to the general kernel on random trees.
 PUBLIC = (
     'ur_description/urdf/ur5_robot.urdf',
     'panda_description/urdf/panda.urdf',
@@ -30,16 +30,16 @@ CARRIERS = {
 }
 
 
-def specialised(source):
+def specialized(source):
     model = RobotModel.from_urdf(source)
-    assert model.specialise()
+    assert model.specialize()
     return model
 
 
 @pytest.mark.parametrize('name', PUBLIC)
 def test_a_public_robot_keeps_the_promise(name):
     text = public_robot(name).read_text()
-    errors = row(name, text, specialised(text)).errors
+    errors = row(name, text, specialized(text)).errors
     for judge in ('pinocchio', 'exact'):
         for quantity, error in errors['library', judge].items():
             assert error <= BOUND, (judge, quantity)
@@ -48,7 +48,7 @@ def test_a_public_robot_keeps_the_promise(name):
 @pytest.mark.parametrize('name', EXTREME)
 def test_an_extreme_robot_keeps_its_digits(name):
     text = extreme_robots()[name]
-    errors = row(name, text, specialised(text)).errors['library', 'exact']
+    errors = row(name, text, specialized(text)).errors['library', 'exact']
     for quantity in ('D', 'C', 'G', 'ID', 'energy'):
         assert errors[quantity] <= BOUND, quantity
 
@@ -58,11 +58,11 @@ def test_machine_code_for_payloads_keeps_the_promise(name):
     text, link = CARRIERS[name][0](), CARRIERS[name][1]
     rng = np.random.default_rng(3)
     model = RobotModel.from_urdf(text)
-    assert model.with_payload(link, 1.0).specialise()
+    assert model.with_payload(link, 1.0).specialize()
     for _ in range(2):
         body = random_body(rng)
         loaded = model.with_payload(link, *body)
-        assert loaded.is_specialised
+        assert loaded.is_specialized
         errors = row(name, with_payload_link(text, link, *body), loaded).errors
         for judge in ('exact',) if name in ('far away', 'boom') else ('pinocchio', 'exact'):
             for quantity, error in errors['library', judge].items():
@@ -85,7 +85,7 @@ def test_machine_code_for_payloads_knows_links_that_weigh_nothing():
     for link in ('e2', 'e1'):
         body = random_body(np.random.default_rng(4))
         loaded = model.with_payload(link, *body)
-        assert loaded.specialise()
+        assert loaded.specialize()
         errors = row(link, with_payload_link(text, link, *body), loaded).errors
         for judge in ('pinocchio', 'exact'):
             for quantity, error in errors['library', judge].items():

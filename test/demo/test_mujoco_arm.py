@@ -43,7 +43,7 @@ def test_mass_matrix_agrees_with_pinocchio(arm, oracle):
 
 
 def test_gravity_torque_agrees_with_pinocchio(arm, oracle):
-    """Masses and centres of mass, too."""
+    """Masses and centers of mass, too."""
     for pose in random_poses(arm, 50):
         assert np.abs(arm.gravity_torque(pose) - oracle(pose)[1]).max() < 1e-5
 

@@ -17,7 +17,7 @@ def assert_agrees(model, oracle, q, qd):
     assert_terms_agree(model, qd, actual, expected, RELATIVE)
     T0, V0 = oracle.energies(model.joint_names, q, qd)
     assert model.kinetic_energy(q, qd) == pytest.approx(T0, rel=RELATIVE)
-    weight = model.total_mass * np.linalg.norm(model.gravity)
+    weight = model.moving_mass * np.linalg.norm(model.gravity)
     assert model.potential_energy(q) == pytest.approx(V0, rel=RELATIVE, abs=1e-12 * weight)
 
 

@@ -10,13 +10,13 @@ from support.robots import random_urdf
 
 
 @pytest.fixture(
-    scope='module', params=['general', pytest.param('specialised', marks=needs_machine_code)]
+    scope='module', params=['general', pytest.param('specialized', marks=needs_machine_code)]
 )
 def model(request):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv('DYNAMICS_NODE_SPECIALISE', '01'[request.param == 'specialised'])
+        patch.setenv('DYNAMICS_NODE_SPECIALIZE', '01'[request.param == 'specialized'])
         model = RobotModel.from_urdf(random_urdf(21, joints=3, with_mimic=False))
-        assert model.specialise() == (request.param == 'specialised')
+        assert model.specialize() == (request.param == 'specialized')
         yield model
 
 
@@ -140,7 +140,7 @@ def test_a_singular_mass_matrix_is_refused_one_by_one_and_in_batches():
                 model.forward_dynamics(q, qd, tau)
             with pytest.raises(SingularMassMatrixError):
                 model.forward_dynamics(q[None], qd[None], tau[None])
-        assert model.specialise() == is_supported()
+        assert model.specialize() == is_supported()
 
 
 def test_batch_axes_of_any_number(model):

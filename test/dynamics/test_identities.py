@@ -175,7 +175,7 @@ def test_mimic_joints_fold_the_matrices_of_the_free_robot(seed):
     text = random_urdf(seed, joints=8)
     model, q, qd = sample(seed, joints=8)
     free = RobotModel.from_urdf(re.sub(r'<mimic .*?/>', '', text))
-    order = [model.tree.body_names.index(name) for name in free.joint_names]
+    order = [model.tree.moving_joint_names.index(name) for name in free.joint_names]
     B, b = model.tree.mimic_matrix[order], model.tree.offset[order]
     D, C, G = free.dynamics(B @ q + b, B @ qd)
     for actual, expected in zip(

@@ -18,6 +18,6 @@ def test_it_computes_the_same_and_starts_no_compiler(monkeypatch):
         answer = model.gravity_torque(q)
         model.with_payload(model.tip_link, 2.0).gravity_torque(q)
     assert not started
-    assert not model.specialise() and not model.is_specialised
+    assert not model.specialize() and not model.is_specialized
     expected = RobotModel.from_urdf(text, (0.0, 1.0, -9.0)).gravity_torque(q)
     np.testing.assert_allclose(answer, expected, atol=1e-10)

@@ -86,7 +86,7 @@ def test_another_payload_takes_the_place_of_the_first():
     expected = robot.with_payload('forearm', 1.0, (0.0, 0.1, 0.0))
     assert np.array_equal(moved.gravity_torque(q), expected.gravity_torque(q))
     assert moved.payload.link == 'forearm'
-    assert moved.total_mass == pytest.approx(robot.total_mass + 1.0)
+    assert moved.moving_mass == pytest.approx(robot.moving_mass + 1.0)
 
 
 def test_on_the_base_it_has_no_effect():
@@ -125,7 +125,7 @@ def test_wrong_arguments_are_refused_in_words(arguments, message):
         RobotModel.from_urdf(ARM7).with_payload(*arguments)
 
 
-def test_a_centre_of_mass_beyond_all_numbers_is_refused_in_words():
+def test_a_center_of_mass_beyond_all_numbers_is_refused_in_words():
     # Warnings are errors here: numpy must not warn of the overflow.
     with pytest.raises(ArgumentError, match=r'second moments that are finite, .*1e\+200'):
         RobotModel.from_urdf(ARM7).with_payload('hand', 1.0, (1e200, 0.0, 0.0))

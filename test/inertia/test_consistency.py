@@ -1,4 +1,4 @@
-"""The judgement on pseudo-inertia matrices: which violations are found and how they are named."""
+"""The judgment on pseudo-inertia matrices: which violations are found and how they are named."""
 
 from dynamics_node import ArgumentError, InertiaError
 from dynamics_node.inertia import (

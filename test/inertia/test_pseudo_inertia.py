@@ -52,7 +52,7 @@ def test_what_goes_into_a_pseudo_inertia_comes_out_again():
     np.testing.assert_array_equal(matrix, matrix.T)
 
 
-def test_rpy_turns_the_tensor_but_not_the_centre_of_mass():
+def test_rpy_turns_the_tensor_but_not_the_center_of_mass():
     rpy = (0.3, -0.4, 1.2)
     matrix = pseudo_inertia(2.5, COM, TENSOR, rpy)
     R = rotation_from_rpy(rpy)
@@ -103,7 +103,7 @@ def test_nothing_combined_is_zero():
     np.testing.assert_array_equal(combine([]), np.zeros((4, 4)))
 
 
-def test_a_body_without_mass_has_its_centre_at_the_origin():
+def test_a_body_without_mass_has_its_center_at_the_origin():
     mass, com = mass_and_com(np.zeros((4, 4)))
     assert mass == 0.0
     np.testing.assert_array_equal(com, np.zeros(3))
@@ -113,7 +113,7 @@ def test_a_body_without_mass_has_its_centre_at_the_origin():
     'call, message',
     [
         (lambda: planar_moments(np.eye(4)), r'expected shape \(3, 3\), got \(4, 4\)'),
-        (lambda: pseudo_inertia(1, [0, 0], TENSOR), r'centre of mass: expected shape \(3,\)'),
+        (lambda: pseudo_inertia(1, [0, 0], TENSOR), r'center of mass: expected shape \(3,\)'),
         (lambda: mass_and_com(np.eye(3)), r'pseudo-inertia: expected shape \(4, 4\)'),
         (lambda: transform_pseudo_inertia(np.eye(4), np.eye(3)), r'transform: expected shape'),
     ],

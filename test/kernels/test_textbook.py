@@ -27,7 +27,7 @@ def test_derivatives_of_transforms_are_those_of_finite_differences(seed):
     _, dA, ddA = textbook.link_transforms(model.tree, q)
     step = 1e-6
     for i in range(n):
-        body = int(np.flatnonzero(model.tree.coordinate == i)[0])
+        body = int(np.flatnonzero(model.tree.q_index == i)[0])
         change = np.zeros(n)
         change[i] = step
         ahead, behind = (

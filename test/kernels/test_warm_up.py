@@ -19,7 +19,7 @@ warm_up.warm_up()
 before = compiled()
 assert before['dynamics'] == before['gravity_torque'] == before['body_poses'] == 1, before
 robot = RobotModel.from_urdf('config/robots/arm7.urdf')
-robot.specialise(loads=True)
+robot.specialize(loads=True)
 still = np.zeros(8)
 still.flags.writeable = False
 many = np.broadcast_to(still, (5, 8))

@@ -29,13 +29,13 @@ def chain(*joints):
 
 def test_fixed_links_are_lumped_at_the_root_in_the_middle_and_at_the_tip():
     tree = chain(('fixed', ''), ('revolute', ''), ('fixed', ''), ('prismatic', ''), ('fixed', ''))
-    assert tree.body_names == tree.joint_names == ('j1', 'j3')
+    assert tree.moving_joint_names == tree.joint_names == ('j1', 'j3')
     assert tree.parent.tolist() == [-1, 0]
     np.testing.assert_array_equal(tree.inertia[:, 3, 3], [2, 2])
     assert tree.base_inertia[3, 3] == 2
-    # The second link of each body stands one metre above its frame.
+    # The second link of each body stands one meter above its frame.
     np.testing.assert_array_equal(tree.inertia[:, 2, 3], [1, 1])
-    np.testing.assert_array_equal(tree.placement[:, 2, 3], [2, 2])
+    np.testing.assert_array_equal(tree.joint_placement[:, 2, 3], [2, 2])
     assert [tree.links[f'l{i}'].body for i in range(6)] == [-1, -1, 0, 0, 1, 1]
     assert tree.links['l5'].placement[2, 3] == 1
 
@@ -51,7 +51,7 @@ def test_no_mass_is_lost():
 def test_a_body_is_the_sum_of_its_links():
     description = read_urdf(random_urdf(5))
     tree = build_tree(description)
-    for body in range(len(tree.body_names)):
+    for body in range(len(tree.moving_joint_names)):
         parts = [
             (link_pseudo_inertia(link.inertial), tree.links[link.name].placement)
             for link in description.links
@@ -73,10 +73,10 @@ def test_a_chain_of_mimic_joints_is_resolved_to_its_leader():
         ('revolute', 'joint="j1" multiplier="-3" offset="0.1"'),
     )
     assert tree.joint_names == ('j0',)
-    assert tree.body_names == ('j0', 'j1', 'j2')
+    assert tree.moving_joint_names == ('j0', 'j1', 'j2')
     np.testing.assert_array_equal(tree.mimic_matrix, [[1], [2], [-6]])
     np.testing.assert_allclose(tree.offset, [0, 0.5, -1.4])
-    assert tree.coordinate.tolist() == [0, 0, 0]
+    assert tree.q_index.tolist() == [0, 0, 0]
 
 
 def test_a_moving_body_without_mass_is_listed():
@@ -95,7 +95,7 @@ def test_a_moving_body_without_mass_is_listed():
 
 def test_a_long_chain_does_not_meet_the_recursion_limit():
     tree = chain(*[('revolute' if i % 100 == 0 else 'fixed', '') for i in range(999)])
-    assert len(tree.body_names) == 10
+    assert len(tree.moving_joint_names) == 10
 
 
 def test_mimic_joints_that_multiply_beyond_all_robots_are_refused():

@@ -1,4 +1,4 @@
-"""The largest gravity torque: closed forms, and Pinocchio with an optimiser of its own."""
+"""The largest gravity torque: closed forms, and Pinocchio with an optimizer of its own."""
 
 import math
 
@@ -67,7 +67,7 @@ def gravity(oracle, names, q):
 
 
 def brute_force(path, seed):
-    """Return each joint's largest torque by Pinocchio: 4000 positions, the best 6 optimised."""
+    """Return each joint's largest torque by Pinocchio: 4000 positions, the best 6 optimized."""
     oracle = PinocchioOracle(path.read_text())
     found = study(path)
     names, (lower, upper) = list(found.model.joint_names), found.ranges.T
@@ -96,11 +96,11 @@ def brute_force(path, seed):
 
 
 @pytest.mark.parametrize('robot', [UR5, PANDA, XARM7, 'arm7'])
-def test_nothing_larger_is_found_by_pinocchio_and_an_optimiser(robot):
+def test_nothing_larger_is_found_by_pinocchio_and_an_optimizer(robot):
     path = ARM7 if robot == 'arm7' else public_robot(robot)
     _, largest = brute_force(path, seed=5)
     ours = np.array([abs(torque) for _, torque in study(path, samples=4096).worst])
-    # The optimiser stops a little before the top; neither may be above the other by more.
+    # The optimizer stops a little before the top; neither may be above the other by more.
     np.testing.assert_allclose(ours, largest, rtol=1e-5, atol=1e-6)
     assert (ours >= largest * (1.0 - 1e-9) - 1e-9).all()
 

@@ -236,7 +236,7 @@ def test_some_joints_are_missing(waiting, published, capfd):
     assert f"-p joints:='[{', '.join(there)}]'" in text
 
 
-def test_a_prefix_before_every_name_is_recognised(waiting, published, capfd):
+def test_a_prefix_before_every_name_is_recognized(waiting, published, capfd):
     waiting.describe()
     waiting.feed([f'left_{name}' for name in ARM.joint_names])
     text = waiting.after(PATIENCE, capfd)

@@ -25,7 +25,7 @@ import yaml
 def arm():
     model = RobotModel.from_urdf(ARM7)
     # The node finds the machine code too: equal to the last bit needs the same code.
-    model.specialise()
+    model.specialize()
     return model
 
 
@@ -409,7 +409,7 @@ def test_stamps_that_cannot_be_true_make_no_torque_and_the_refusal_says_so(clien
     assert 'dropped so far: ' in answer.message
     assert ' for stamp' in answer.message
     process.send(signal.SIGINT)
-    assert 'synchronise the clocks of both machines' in process.wait()[1]
+    assert 'synchronize the clocks of both machines' in process.wait()[1]
 
 
 def test_every_service_but_enable_waits_for_the_torque(client):

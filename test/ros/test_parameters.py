@@ -105,23 +105,23 @@ def test_the_reference_has_every_parameter_with_its_default():
 def given():
     """Return a node that was started with two names that nobody declares."""
     client = Client(
-        'misspelt',
+        'misspelled',
         parameter_overrides=[
             RosParameter('effort_limit', value=[1.0]),
-            RosParameter('colour', value='red'),
+            RosParameter('color', value='red'),
         ],
     )
     yield client.node
     client.close()
 
 
-def test_a_misspelt_name_is_warned_of_and_what_others_use_is_not(given, capfd):
+def test_a_misspelled_name_is_warned_of_and_what_others_use_is_not(given, capfd):
     Parameters(given)
     said = capfd.readouterr().err
     assert (
         "there is no parameter 'effort_limit', and its value is ignored: is 'effort_limits' meant?"
     ) in said
-    assert 'colour' not in said
+    assert 'color' not in said
 
 
 def test_what_is_accepted_stands_in_the_description_of_a_parameter(given):

@@ -149,7 +149,7 @@ def test_a_stamp_far_from_the_clock_makes_nothing_fresh(late, kind):
         stamped(unit, 1.0, late=late)
         assert unit.age(1.0) == pytest.approx(0.09)  # it is as old as its stamp
         return
-    with pytest.raises(RejectedStateError, match='synchronise the clocks'):
+    with pytest.raises(RejectedStateError, match='synchronize the clocks'):
         stamped(unit, 1.0, late=late)
     assert unit.age(1.0) == 1.0
     assert unit.rejected == {kind: 1}
@@ -381,7 +381,7 @@ def test_a_stamp_as_far_as_a_state_may_be_old_passes(late):
     'late, text',
     [
         (0.301, r'within 0\.3 s of the clock, got one 0\.301 s old'),
-        (3600, r'3600\.000 s old: synchronise the clocks'),
+        (3600, r'3600\.000 s old: synchronize the clocks'),
         (-0.4, r'0\.400 s in the future'),
         (NOW / SECOND, 'set use_sim_time on both sides or on neither'),
     ],
@@ -393,7 +393,7 @@ def test_a_stamp_further_away_is_refused_in_words(late, text):
     assert not caught.value.is_fault
 
 
-def test_a_very_short_timeout_leaves_room_for_clocks_that_are_synchronised():
+def test_a_very_short_timeout_leaves_room_for_clocks_that_are_synchronized():
     StampTolerance(0.005).check(NOW - SECOND // 11, NOW)
 
 

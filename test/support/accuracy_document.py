@@ -148,7 +148,7 @@ def _judges(rows):
             *lines,
             '',
             _text(
-                '- Pinocchio sums its C in the base frame, and MuJoCo everything about the centre '
+                '- Pinocchio sums its C in the base frame, and MuJoCo everything about the center '
                 'of mass of the whole robot; a light link far from there loses digits in the '
                 'difference of large moments. Here each joint has a frame of its own.'
             ),

@@ -23,7 +23,7 @@ def natural_scales(model, D, qd):
     return (
         scale,
         scale * np.abs(qd).max(initial=0.0),
-        np.linalg.norm(model.gravity) * np.sqrt(model.total_mass) * diagonal,
+        np.linalg.norm(model.gravity) * np.sqrt(model.moving_mass) * diagonal,
     )
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 
 def random_body(rng):
-    """Return mass, centre of mass and inertia tensor of a real body: of eight points."""
+    """Return mass, center of mass and inertia tensor of a real body: of eight points."""
     points, masses = rng.normal(0.0, 0.1, (8, 3)), rng.uniform(0.1, 0.5, 8)
     com = masses @ points / masses.sum()
     r = points - com
@@ -25,7 +25,7 @@ def with_payload_link(text, link, mass, com, inertia):
     com : sequence of float
         In the link's frame, m.
     inertia : numpy.ndarray, shape (3, 3)
-        About the centre of mass, kg m².
+        About the center of mass, kg m².
 
     Returns
     -------

@@ -12,7 +12,7 @@ from .robots import public_robot, public_robots
 # What is promised about every robot and quantity, against Pinocchio and against 80 bits.
 BOUND = 1e-11
 
-# MuJoCo sums about the centre of mass of the whole robot, and its C is the polar form of
+# MuJoCo sums about the center of mass of the whole robot, and its C is the polar form of
 # its bias here; both cost it digits, which its own error against 80 bits shows.
 MUJOCO_BOUND = 1e-9
 
@@ -65,7 +65,7 @@ def row(name, text, model, states=STATES):
     return Row(
         name,
         len(model.joint_names),
-        len(model.tree.body_names) - len(model.joint_names),
+        len(model.tree.moving_joint_names) - len(model.joint_names),
         {pair: worst_of(result.errors[pair] for result in results) for pair in results[0].errors},
         worst_of(result.plain for result in results),
         max(result.condition for result in results),

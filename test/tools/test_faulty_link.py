@@ -178,7 +178,7 @@ def test_the_same_seed_is_the_same_garbage():
     assert put_through('garbage', 20, 3) != put_through('garbage', 20, 4)
 
 
-def test_a_serialised_state_is_moved_in_time():
+def test_a_serialized_state_is_moved_in_time():
     data = serialize_message(state(0))
     earlier = shifted(data, -2_000_000_008)
     assert stamp_of(data) == 1_000_000_000_007

@@ -284,10 +284,10 @@ def test_mimic_of_mimic_is_read():
     assert joints[1].mimic.multiplier == 2.0
 
 
-def test_axis_is_normalised_or_defaulted_with_a_warning_and_never_zero():
+def test_axis_is_normalized_or_defaulted_with_a_warning_and_never_zero():
     robot = read_urdf(two_links('<axis xyz="0 3 4"/>'))
     np.testing.assert_allclose(robot.joints[0].axis, [0, 0.6, 0.8])
-    assert robot.warnings == ("joint 'j': axis has length 5, it is normalised to 1",)
+    assert robot.warnings == ("joint 'j': axis has length 5, it is normalized to 1",)
     robot = read_urdf(two_links(''))
     np.testing.assert_array_equal(robot.joints[0].axis, [1, 0, 0])
     assert robot.warnings == ("joint 'j': axis is missing, (1, 0, 0) is used",)
@@ -430,6 +430,6 @@ def test_what_is_no_xml_or_too_deep_is_refused_with_prefixes_too(text):
     assert len(problems(text)) == 1
 
 
-def test_an_axis_too_long_to_normalise_is_refused():
+def test_an_axis_too_long_to_normalize_is_refused():
     [problem] = problems(two_links('<axis xyz="1e308 1e308 1"/>'))
     assert problem.startswith("joint 'j': axis has length")

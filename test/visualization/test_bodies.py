@@ -41,7 +41,7 @@ def rotation(shape):
 
 
 @pytest.mark.parametrize('name', ROBOTS)
-def test_every_centre_of_mass_is_where_mujoco_has_it(name):
+def test_every_center_of_mass_is_where_mujoco_has_it(name):
     text = text_of(name)
     robot, judge = RobotModel.from_urdf(text), MujocoOracle(text)
     q, _ = random_state(np.random.default_rng(1), robot)
@@ -53,7 +53,7 @@ def test_every_centre_of_mass_is_where_mujoco_has_it(name):
             body = judge.model.body('link_named_world' if link == 'world' else link).id
             mass[frame.body] += judge.model.body_mass[body]
             moment[frame.body] += judge.model.body_mass[body] * judge.data.xipos[body]
-    spheres = of_group(drawn(robot, q), 'centre_of_mass', SPHERE)
+    spheres = of_group(drawn(robot, q), 'center_of_mass', SPHERE)
     assert set(spheres) == set(np.flatnonzero(mass > 0.0).tolist())
     assert spheres
     for k, sphere in spheres.items():
@@ -61,7 +61,7 @@ def test_every_centre_of_mass_is_where_mujoco_has_it(name):
 
 
 @pytest.mark.parametrize('name', ROBOTS)
-def test_centres_and_boxes_are_those_of_pinocchio(name):
+def test_centers_and_boxes_are_those_of_pinocchio(name):
     text = text_of(name)
     robot, judge = RobotModel.from_urdf(text), PinocchioOracle(text)
     q, _ = random_state(np.random.default_rng(2), robot)
@@ -69,11 +69,11 @@ def test_centres_and_boxes_are_those_of_pinocchio(name):
     pinocchio.forwardKinematics(judge.model, judge.data, judge._configuration(B @ q + b))
     shapes = drawn(robot, q)
     spheres, boxes = (
-        of_group(shapes, *what) for what in (('centre_of_mass', SPHERE), ('inertia', BOX))
+        of_group(shapes, *what) for what in (('center_of_mass', SPHERE), ('inertia', BOX))
     )
     heaviest = max(inertia.mass for inertia in judge.model.inertias[1:])
     largest = max(sphere.size[0] for sphere in spheres.values())
-    for k, joint in enumerate(robot.tree.body_names):
+    for k, joint in enumerate(robot.tree.moving_joint_names):
         i = judge.model.getJointId(joint)
         inertia, pose = judge.model.inertias[i], judge.data.oMi[i]
         if not inertia.mass > 0.0:
@@ -116,7 +116,7 @@ def test_what_is_no_body_is_red_and_said(problem):
     shapes = drawn(robot, [0.3])
     [box], [text] = (list(of_group(shapes, 'problems', kind).values()) for kind in (BOX, TEXT))
     assert text.text == f'wrong: {problem}'
-    assert box.colour[0] == 1.0 and max(box.colour[1:3]) < 0.2
+    assert box.color[0] == 1.0 and max(box.color[1:3]) < 0.2
     assert not of_group(shapes, 'inertia', BOX)
 
 
@@ -127,15 +127,15 @@ def test_frames_without_mass_are_no_problem():
         '</robot>'
     )
     assert {shape.group for shape in drawn(robot, [0.3])}.isdisjoint(
-        {'centre_of_mass', 'inertia', 'problems'}
+        {'center_of_mass', 'inertia', 'problems'}
     )
 
 
 def test_bodies_of_the_base_weigh_on_no_joint_and_are_left_out():
     robot = RobotModel.from_urdf(ARM7)
     assert robot.tree.base_inertia[3, 3] > 0.0
-    names = of_group(drawn(robot, robot.neutral_position), 'centre_of_mass', SPHERE)
-    assert len(names) == len(robot.tree.body_names)
+    names = of_group(drawn(robot, robot.neutral_position), 'center_of_mass', SPHERE)
+    assert len(names) == len(robot.tree.moving_joint_names)
 
 
 def test_the_payload_is_a_body_of_its_own():
@@ -151,10 +151,10 @@ def test_the_payload_is_a_body_of_its_own():
     assert sphere.number != box.number
     pose = robot.link_pose(q, 'hand')
     assert sphere.position == pytest.approx((pose @ [0.0, 0.1, 0.2, 1.0])[:3], abs=1e-14)
-    body = of_group(shapes, 'centre_of_mass', SPHERE)
+    body = of_group(shapes, 'center_of_mass', SPHERE)
     mass = robot.tree.inertia[0, 3, 3]
     assert (sphere.size[0] / body[0].size[0]) ** 3 == pytest.approx(2.0 / mass)
-    assert sphere.colour != body[0].colour
+    assert sphere.color != body[0].color
     a, b, c = np.sort(box.size)
     assert 2.0 / 12.0 * np.array([b**2 + c**2, a**2 + c**2, a**2 + b**2]) == pytest.approx(
         [0.04, 0.03, 0.02]

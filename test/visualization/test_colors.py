@@ -1,4 +1,4 @@
-"""Colours of loads: from green to red, and red beyond."""
+"""Colors of loads: from green to red, and red beyond."""
 
 from dynamics_node.visualization import colors
 import numpy as np
@@ -17,7 +17,7 @@ def test_over_the_limit_is_red(load):
     assert colors.of_load(load) == colors.OVER_THE_LIMIT
 
 
-def test_it_never_jumps_and_is_a_colour():
+def test_it_never_jumps_and_is_a_color():
     found = np.array([colors.of_load(load) for load in np.linspace(0.0, 1.2, 500)])
     assert np.abs(np.diff(found, axis=0)).max() < 0.11
     assert found.min() >= 0.0 and found.max() <= 1.0

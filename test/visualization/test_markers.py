@@ -67,7 +67,7 @@ def axis(marker):
 def axes_of(model, q):
     """Return the axes of the revolute joints in the base frame, from the Jacobians."""
     links = {frame.body: link for link, frame in model.tree.links.items()}
-    bodies = {name: k for k, name in enumerate(model.tree.body_names)}
+    bodies = {name: k for k, name in enumerate(model.tree.moving_joint_names)}
     return {
         name: model.jacobian(q, links[bodies[name]])[3:, i]
         for i, name in enumerate(model.joint_names)
@@ -91,7 +91,7 @@ def until_complete(client, received, state):
     client.until(
         lambda: (
             groups(received)
-            >= {'centre_of_mass', 'gravity', 'gravity_torque', 'effort', 'torque_text'}
+            >= {'center_of_mass', 'gravity', 'gravity_torque', 'effort', 'torque_text'}
         ),
         state,
     )
@@ -117,7 +117,7 @@ def test_the_picture_is_that_of_the_services(client, start, start_markers, name)
     assert answer.success
     assert_fit_to_be_shown(received[-1])
     markers = by_name(received[-1])
-    kinds = dict(zip(model.tree.body_names, model.tree.kind.tolist(), strict=True))
+    kinds = dict(zip(model.tree.moving_joint_names, model.tree.joint_type.tolist(), strict=True))
     axes = axes_of(model, q)
     for i, joint in enumerate(answer.joint_names):
         torque, limit = answer.gravity_torque[i], model.effort_limits[i]
@@ -136,7 +136,7 @@ def test_the_picture_is_that_of_the_services(client, start, start_markers, name)
     for k, inertia in enumerate(model.tree.inertia):
         if inertia[3, 3] > 0.0:
             expected = (poses[k] @ inertia[:, 3] / inertia[3, 3])[:3]
-            assert place(markers['centre_of_mass', k]) == pytest.approx(expected, abs=1e-12)
+            assert place(markers['center_of_mass', k]) == pytest.approx(expected, abs=1e-12)
     for marker in markers.values():
         assert marker.header.frame_id == model.tree.root
         assert abs(marker.header.stamp.sec - time.time()) < 60.0
@@ -170,7 +170,7 @@ def test_without_a_subscriber_it_does_not_even_listen(client, start_markers):
     client.until(lambda: received, state)
     assert received[0].markers[0].action == Marker.DELETEALL  # another RViz, perhaps
     # Where joint_states has no effort, none is shown; without the node, no torque either.
-    assert groups(received) == {'centre_of_mass', 'inertia'}
+    assert groups(received) == {'center_of_mass', 'inertia'}
 
 
 def test_it_comes_at_a_rate_for_people_however_fast_the_states(client, start_markers):
@@ -209,10 +209,10 @@ def test_without_the_dynamics_node_masses_are_drawn(client, start, start_markers
 
     client.until(lambda: f'waiting for {node_is_missing}' in lines, hinge)
     client.until(lambda: received, hinge)
-    assert groups(received) == {'centre_of_mass', 'inertia'}
+    assert groups(received) == {'center_of_mass', 'inertia'}
     pendulum = RobotModel.from_urdf(PENDULUM)
     expected = pendulum.link_pose([0.3], 'rod') @ [-0.35, 0.0, 0.0, 1.0]
-    assert place(by_name(received[-1])['centre_of_mass', 0]) == pytest.approx(expected[:3])
+    assert place(by_name(received[-1])['center_of_mass', 0]) == pytest.approx(expected[:3])
     assert received[-1].markers[0].header.frame_id == 'world'
     # The node that appears has the same description, and adds what only it knows.
     node = start(state_timeout=1.0)
@@ -226,7 +226,7 @@ def test_without_the_dynamics_node_masses_are_drawn(client, start, start_markers
         lambda: len(received) > 1 and len(by_name(received[-1])) > 40,
         lambda: client.publish(arm.joint_names, arm.neutral_position),
     )
-    first = next(message for message in received if ('centre_of_mass', 5) in by_name(message))
+    first = next(message for message in received if ('center_of_mass', 5) in by_name(message))
     assert first.markers[0].action == Marker.DELETEALL
     names = {
         marker.text.partition(':')[0]
@@ -238,7 +238,7 @@ def test_without_the_dynamics_node_masses_are_drawn(client, start, start_markers
     node.send(signal.SIGINT)
     node.wait(PATIENCE)
     client.until(
-        lambda: groups(received) == {'centre_of_mass', 'inertia'},
+        lambda: groups(received) == {'center_of_mass', 'inertia'},
         lambda: client.publish(arm.joint_names, arm.neutral_position),
     )
 

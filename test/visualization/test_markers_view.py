@@ -15,7 +15,7 @@ from visualization_msgs.msg import Marker
 
 STAMP = Time(sec=1_700_000_000, nanosec=999_999_999)
 ARM = RobotModel.from_urdf(ARM7)
-MASSES = {'centre_of_mass', 'inertia'}
+MASSES = {'center_of_mass', 'inertia'}
 SETTINGS = {
     'joints': [],
     'gravity': [0.0, 0.0, -9.81],
@@ -103,7 +103,7 @@ def test_states_are_merged_by_name():
     q[ARM.joint_names.index('wrist_roll')] = -0.4
     shapes = shown.shapes(0.0)
     assert not shown.has_new_state
-    [sphere] = [shape for shape in shapes if (shape.group, shape.number) == ('centre_of_mass', 6)]
+    [sphere] = [shape for shape in shapes if (shape.group, shape.number) == ('center_of_mass', 6)]
     inertia = ARM.tree.inertia[6]
     assert sphere.position == pytest.approx(
         (ARM.body_poses(q)[6] @ inertia[:, 3] / inertia[3, 3])[:3]
@@ -247,7 +247,7 @@ def test_a_shape_is_translated_completely():
         Marker.LINE_STRIP,
         'words',
     )
-    assert (s.x, s.y, s.z) == shape.size and (c.r, c.g, c.b, c.a) == shape.colour
+    assert (s.x, s.y, s.z) == shape.size and (c.r, c.g, c.b, c.a) == shape.color
     assert (p.x, p.y, p.z) == shape.position and (o.x, o.y, o.z, o.w) == shape.orientation
     assert tuple((point.x, point.y, point.z) for point in marker.points) == shape.points
 

@@ -18,7 +18,7 @@ def assert_fit_to_be_shown(shapes):
     for shape in shapes:
         numbers = [
             *shape.size,
-            *shape.colour,
+            *shape.color,
             *shape.position,
             *shape.orientation,
             *(x for point in shape.points for x in point),
@@ -26,8 +26,8 @@ def assert_fit_to_be_shown(shapes):
         assert np.isfinite(numbers).all(), shape
         assert min(shape.size) > 0.0, shape
         assert np.linalg.norm(shape.orientation) == pytest.approx(1.0, abs=1e-12), shape
-        assert 0.0 < shape.colour[3] <= 1.0 and min(shape.colour) >= 0.0, shape
-        assert max(shape.colour) <= 1.0 and shape.group, shape
+        assert 0.0 < shape.color[3] <= 1.0 and min(shape.color) >= 0.0, shape
+        assert max(shape.color) <= 1.0 and shape.group, shape
         assert shape.kind in SHAPES and bool(shape.text) == (shape.kind == 'text'), shape
         assert len(shape.points) == 2 or shape.kind != ARROW
 

@@ -27,7 +27,7 @@ def without_travel(tree):
     return dataclasses.replace(tree, limits=limits)
 
 
-def test_the_reach_of_the_pendulum_is_its_length_to_the_centre_of_mass():
+def test_the_reach_of_the_pendulum_is_its_length_to_the_center_of_mass():
     assert reach(RobotModel.from_urdf(PENDULUM).tree) == pytest.approx(0.35)
 
 

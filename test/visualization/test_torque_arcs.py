@@ -1,4 +1,4 @@
-"""Arcs and arrows of torques: which way, how far, in which colour."""
+"""Arcs and arrows of torques: which way, how far, in which color."""
 
 import math
 
@@ -57,7 +57,7 @@ def test_axes_are_those_that_a_small_motion_turns_about(source):
     n = len(robot.joint_names)
     q, _ = random_state(np.random.default_rng(4), robot)
     shapes = drawn(robot, q, np.ones(n), np.full(n, -2.0), np.full(n, 4.0))
-    names, step = robot.tree.body_names, 1e-6
+    names, step = robot.tree.moving_joint_names, 1e-6
     for i, name in enumerate(robot.joint_names):
         k = names.index(name)
         ahead, back = (robot.body_poses(q + sign * step * np.eye(n)[i])[k] for sign in (1, -1))
@@ -66,7 +66,7 @@ def test_axes_are_those_that_a_small_motion_turns_about(source):
         for group in ('gravity_torque', 'effort'):
             shape = shapes[group, i]
             axis = rotation(shape)[:, 2]
-            assert axis == pytest.approx(shift if robot.tree.kind[k] else turn, abs=1e-8)
+            assert axis == pytest.approx(shift if robot.tree.joint_type[k] else turn, abs=1e-8)
             assert shape.position == pytest.approx(robot.body_poses(q)[k, :3, 3], abs=1e-14)
 
 
@@ -78,7 +78,7 @@ def test_the_limit_is_three_quarters_of_a_turn(load, sign):
     shapes = drawn(
         robot, robot.neutral_position, sign * load * limits, -sign * load * limits, limits
     )
-    for i, kind in enumerate(robot.tree.kind[: len(limits)]):
+    for i, kind in enumerate(robot.tree.joint_type[: len(limits)]):
         torque, effort = shapes['gravity_torque', i], shapes['effort', i]
         if kind:
             length = torque.points[1][2] - torque.points[0][2]
@@ -92,7 +92,7 @@ def test_the_limit_is_three_quarters_of_a_turn(load, sign):
             assert swept(torque) == pytest.approx(expected, rel=1e-9)
             assert swept(effort) == pytest.approx(-expected, rel=1e-9)
         for shape in (torque, effort):
-            assert shape.colour == pytest.approx(colors.of_load(load), abs=1e-12)
+            assert shape.color == pytest.approx(colors.of_load(load), abs=1e-12)
         assert torque.kind == effort.kind == LINE
 
 
@@ -113,7 +113,7 @@ def test_without_limits_they_are_grey_and_compared_with_the_largest(limits):
     shapes = drawn(robot, np.zeros(6), torque, None, np.full(6, limits))
     for i, value in enumerate(torque):
         shape = shapes['gravity_torque', i]
-        assert shape.colour == colors.UNLIMITED
+        assert shape.color == colors.UNLIMITED
         if value:
             assert swept(shape) == pytest.approx(value / 4.0 * FULL)
         assert shapes['torque_text', i].text == f'{robot.joint_names[i]}: {value:g} N m'

@@ -77,7 +77,7 @@ def main(arguments=None):
 def be_strict():
     """Let no line in a log pass, and no other process be started."""
     # Machine code of its own for every robot would be compiled in another process.
-    os.environ['DYNAMICS_NODE_SPECIALISE'] = '0'
+    os.environ['DYNAMICS_NODE_SPECIALIZE'] = '0'
     logging.getLogger().addHandler(_NothingLogged())
     # A file of its own: standard error is somewhere else while rclpy may print.
     faulthandler.enable(os.dup(2))

@@ -92,5 +92,5 @@ def _use(model):
         return 'taken, then refused: ' + first_words(str(error))
     robot.unlimited_joints([])
     repr(model)
-    assert not model.is_specialised
+    assert not model.is_specialized
     return 'taken' if is_usable else 'taken: D is not positive definite'

@@ -237,12 +237,12 @@ FAULTS = {
 
 
 def shifted(data, offset):
-    """Return a serialised joint state with `offset` ns added to its stamp."""
+    """Return a serialized joint state with `offset` ns added to its stamp."""
     return _restamped(bytearray(data), stamp_of(data) + offset)
 
 
 def stamp_of(data):
-    """Return the stamp of any serialised message that begins with a header, ns."""
+    """Return the stamp of any serialized message that begins with a header, ns."""
     sec, nanosec = _STAMP.unpack_from(data, len(_REPRESENTATION))
     return sec * 1_000_000_000 + nanosec
 

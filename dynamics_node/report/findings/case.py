@@ -130,7 +130,7 @@ class Case:
         """
         Return how far a link goes, as far as the URDF tells without its shapes, m.
 
-        From its frame to its centre of mass and to the joints that it carries, and from the joint
+        From its frame to its center of mass and to the joints that it carries, and from the joint
         before it.
 
         """
@@ -144,7 +144,7 @@ class Case:
         )
 
     def size_without_com(self, link):
-        """Return the same without the centre of mass."""
+        """Return the same without the center of mass."""
         return max([0.0, *self.joints_at[link], *self._step_to.get(link, [])])
 
     @cached_property

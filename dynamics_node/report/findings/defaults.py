@@ -42,7 +42,7 @@ def find_defaults(case):
         *told(hits, lambda count: f'{count} links have a tensor that looks typed by hand'),
         *told(
             balanced,
-            lambda count: f'{count} heavy links have their centre of mass exactly on their joint',
+            lambda count: f'{count} heavy links have their center of mass exactly on their joint',
         ),
     ]
 
@@ -92,7 +92,7 @@ def _placeholder(case, entry, inertial):
             changed(inertial, tensor=moment * np.eye(3)),
             f'as a ball of {number(size)} m',
         ),
-        'take mass, centre of mass and tensor from the CAD program, or compute them from the '
+        'take mass, center of mass and tensor from the CAD program, or compute them from the '
         'shape',
         abs(math.log(max(value, 1e-12) / moment)),
     )
@@ -191,7 +191,7 @@ def _balanced(case, entry, inertial):
         NOTE,
         'com_at_joint',
         entry.name,
-        f"link '{entry.name}' of {number(entry.mass)} kg has its centre of mass exactly at its "
+        f"link '{entry.name}' of {number(entry.mass)} kg has its center of mass exactly at its "
         f'frame, though it goes {number(2.0 * float(np.linalg.norm(half)))} m to joint '
         f"'{joint.name}'",
         f'{number(entry.mass)} kg',

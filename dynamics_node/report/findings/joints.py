@@ -13,10 +13,10 @@ from ...model import build_tree
 # Words of a warning of the reader → kind, severity and advice.
 _READER = (
     (
-        'it is normalised to 1',
+        'it is normalized to 1',
         'axis_length',
         NOTE,
-        'none: it is normalised',
+        'none: it is normalized',
         'write a unit vector, so that every other program takes the same axis',
     ),
     (

@@ -44,7 +44,7 @@ def _over(joints, study):
             f'{number(joint.effort)} {joint.effort_unit}',
             f'{number(joint.gravity.magnitude)} of {number(joint.effort)} {joint.effort_unit}',
             _sinks(study, joint),
-            'check masses, centres of mass and <limit effort> (N m or N at the joint, behind the '
+            'check masses, centers of mass and <limit effort> (N m or N at the joint, behind the '
             'gear); or the arm must keep away from there',
             joint.gravity.share,
         )
@@ -165,7 +165,7 @@ def _not_looked_at(joints):
             f'{names(joint.name for joint in standing)}',
             f'this report has {"it" if len(standing) == 1 else "them"} stand at the neutral '
             'position only: torques of other joints may be larger elsewhere',
-            'write <limit lower="..." upper="..."/> in metres',
+            'write <limit lower="..." upper="..."/> in meters',
         )
     ]
 

@@ -23,7 +23,7 @@ _GYRATION, _GYRATION_OF_ALL = 0.5, 1.0
 _LIGHT_LINK = 2e-3
 # What changes no torque by as much is not told.
 _MATTERS = 0.01
-# If grams were written as kilograms, then the mass is between these shares of its neighbours';
+# If grams were written as kilograms, then the mass is between these shares of its neighbors';
 # as what it may weigh it is named only if it is not much more than theirs.
 _PLAUSIBLE, _LIKELY = (0.05, 20.0), 3.0
 
@@ -166,12 +166,12 @@ def _grams(case):
         reason = _too_light(case, entry, judges_moments)
         if reason is None:
             continue
-        sentence, short, neighbours = reason
+        sentence, short, neighbors = reason
         mass = 1000.0 * entry.mass
         right = f'if it weighed {kilograms(mass)}'
-        if not _is_plausible(mass, neighbours) or mass > _LIKELY * max(neighbours):
-            mass = _mean(neighbours)
-            right = f'if it weighed as much as its neighbours, {kilograms(mass)}'
+        if not _is_plausible(mass, neighbors) or mass > _LIKELY * max(neighbors):
+            mass = _mean(neighbors)
+            right = f'if it weighed as much as its neighbors, {kilograms(mass)}'
         effect = torque_effect(
             case, {entry.name: changed(case.links[entry.name].inertial, mass=mass)}, right
         )
@@ -187,10 +187,10 @@ def _grams(case):
                 effect,
                 'URDF has kilograms: were grams written as kilograms, or is a digit lost? Weigh '
                 f'it or ask the CAD program, and correct <mass value="{number(entry.mass)}"/>',
-                max(neighbours) / entry.mass,
+                max(neighbors) / entry.mass,
             )
         )
-    return told(hits, lambda count: f'{count} links are far lighter than their neighbours')
+    return told(hits, lambda count: f'{count} links are far lighter than their neighbors')
 
 
 def _mean(masses):
@@ -199,8 +199,8 @@ def _mean(masses):
     return math.exp(sum(map(math.log, heavy)) / len(heavy))
 
 
-def _is_plausible(mass, neighbours):
-    return _PLAUSIBLE[0] * min(neighbours) <= mass <= _PLAUSIBLE[1] * max(neighbours)
+def _is_plausible(mass, neighbors):
+    return _PLAUSIBLE[0] * min(neighbors) <= mass <= _PLAUSIBLE[1] * max(neighbors)
 
 
 def _are_all_too_large(case):
@@ -212,7 +212,7 @@ def _are_all_too_large(case):
 
 
 def _too_light(case, entry, judges_moments):
-    # A sentence, its numbers, and the masses of the neighbours, kg; None for a likely mass.
+    # A sentence, its numbers, and the masses of the neighbors, kg; None for a likely mass.
     body = case.body_mass[entry.carrier]
     parent = case.body_parent[entry.carrier]
     before = (
@@ -227,8 +227,8 @@ def _too_light(case, entry, judges_moments):
         for child in case.body_children[entry.carrier]
         if case.body_mass[child] > 0.0
     ]
-    neighbours = [mass for mass in (before, *behind, body - entry.mass) if mass > 0.1 * entry.mass]
-    if not neighbours:
+    neighbors = [mass for mass in (before, *behind, body - entry.mass) if mass > 0.1 * entry.mass]
+    if not neighbors:
         return None
     gyration = (
         math.sqrt(max(entry.principal_moments) / entry.mass)
@@ -237,33 +237,33 @@ def _too_light(case, entry, judges_moments):
     )
     reach = case.reach
     is_most_of_body = entry.mass >= 0.5 * body
-    is_lighter = judges_moments and entry.mass < 0.1 * max(neighbours)
+    is_lighter = judges_moments and entry.mass < 0.1 * max(neighbors)
     if is_lighter and (
         (
             gyration > _GYRATION_OF_ALL * reach > 0.0
-            and _is_plausible(1000.0 * entry.mass, neighbours)
+            and _is_plausible(1000.0 * entry.mass, neighbors)
         )
         or (
             is_most_of_body
             and gyration > _GYRATION * reach > 0.0
-            and entry.mass < 0.1 * min(neighbours)
+            and entry.mass < 0.1 * min(neighbors)
         )
         or (
             # Beside heavier ones on the same body: a tool, or what carries one.
             not is_most_of_body
             and entry.mass < _LIGHT
             and is_too_large(case, entry)
-            and _is_plausible(1000.0 * entry.mass, neighbours)
+            and _is_plausible(1000.0 * entry.mass, neighbors)
             and not is_placeholder(case.links[entry.name].inertial.tensor)
         )
     ):
         return (
             f"link '{entry.name}' weighs {kilograms(entry.mass)}, but its moments of inertia "
             f'are those of a part of {number(gyration)} m radius (sqrt(I/m)) in a robot that '
-            f'reaches {number(reach)} m; its neighbours weigh '
-            f'{kilograms(max(neighbours))}',
+            f'reaches {number(reach)} m; its neighbors weigh '
+            f'{kilograms(max(neighbors))}',
             kilograms(entry.mass),
-            neighbours,
+            neighbors,
         )
     if not is_most_of_body:
         return None
@@ -272,13 +272,13 @@ def _too_light(case, entry, judges_moments):
         not behind
         and _LIGHTER_AT_END * body < before
         and entry.mass < _LIGHT_AT_END
-        and _is_plausible(1000.0 * entry.mass, neighbours)
+        and _is_plausible(1000.0 * entry.mass, neighbors)
     ):
         return (
             f"link '{entry.name}' weighs {kilograms(entry.mass)}, "
             f'{factor(before / body)} less than what carries it',
             kilograms(entry.mass),
-            neighbours,
+            neighbors,
         )
     if (
         entry.mass < _LIGHT
@@ -293,7 +293,7 @@ def _too_light(case, entry, judges_moments):
             f'{factor(min(before, max(behind)) / body)} less than what is before and behind '
             f'it, and carries {kilograms(load)}',
             kilograms(entry.mass),
-            neighbours,
+            neighbors,
         )
     return None
 

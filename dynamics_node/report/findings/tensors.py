@@ -72,7 +72,7 @@ def find_tensors(case):
             shifted,
             lambda count: (
                 f'{count} links have a tensor that seems to be about the '
-                'link frame, not about the centre of mass'
+                'link frame, not about the center of mass'
             ),
         ),
     ]
@@ -108,7 +108,7 @@ def _impossible(case, entry, principal, inertial):
         f'{number(principal[0])} kg m^2',
         effect,
         'the signs of ixy, ixz, iyz or a diagonal entry are wrong, or one product of inertia is '
-        'too large: copy the tensor anew from the CAD program, about the centre of mass',
+        'too large: copy the tensor anew from the CAD program, about the center of mass',
         -float(principal[0]),
     )
 
@@ -186,7 +186,7 @@ def _proposal(inertial):
     return (
         _cut(inertial),
         'with the largest moment cut to that sum',
-        'copy the tensor anew from the CAD program: about the centre of mass, in kg m^2, '
+        'copy the tensor anew from the CAD program: about the center of mass, in kg m^2, '
         'ixy, ixz, iyz with their signs',
     )
 
@@ -268,9 +268,9 @@ def _too_large(case, entry, principal, inertial):
         'inertia_too_large',
         entry.name,
         f"link '{entry.name}' has {number(principal[2])} kg m^2 at {number(entry.mass)} kg, as if "
-        f'its mass were {number(gyration)} m from its centre; as far as joints and centre of mass '
+        f'its mass were {number(gyration)} m from its center; as far as joints and center of mass '
         f'tell it goes {number(case.size(entry.name))} m',
-        f'as if its mass were {number(gyration)} m from its centre, in a link of '
+        f'as if its mass were {number(gyration)} m from its center, in a link of '
         f'{number(case.size(entry.name))} m',
         inertia_effect(case, entry.name, ball, f'as a ball of {number(size)} m radius'),
         'URDF has kg m^2: g mm^2 are 1e-9 and kg mm^2 are 1e-6 of it, lb in^2 2.93e-4; look for '
@@ -304,18 +304,18 @@ def _about_frame(case, entry, inertial):
         case,
         entry.name,
         changed(inertial, tensor=rotation.T @ without @ rotation),
-        'with the tensor moved to the centre of mass',
+        'with the tensor moved to the center of mass',
     )
     return Hit(
         NOTE if effect.share < _WARNS else WARNING,
         'tensor_not_about_com',
         entry.name,
-        f"link '{entry.name}': its tensor seems to be about the link frame: moved to the centre "
+        f"link '{entry.name}': its tensor seems to be about the link frame: moved to the center "
         f'of mass (Steiner), its products of inertia go from {number(before)} to '
         f'{number(after)} kg m^2',
         f'{number(before)} to {number(after)} kg m^2',
         effect,
-        'URDF wants the tensor about the centre of mass, in the axes of <origin rpy>: take that '
+        'URDF wants the tensor about the center of mass, in the axes of <origin rpy>: take that '
         'one from the CAD program',
         before,
     )

@@ -150,7 +150,7 @@ def _sections(report, is_drawn):
         yield _section(
             'links',
             'Links',
-            'As they stand in the URDF. Principal moments are about the centre of mass.',
+            'As they stand in the URDF. Principal moments are about the center of mass.',
             links_table(report.links),
         )
 
@@ -174,6 +174,6 @@ def _foot(report, is_drawn):
         f'<footer>{how}Gravity {text(vector(report.gravity))} m/s² '
         f'({text(number(sum(value**2 for value in report.gravity) ** 0.5))}). {root}'
         'Made by dynamics_node; this page asks the network for nothing.'
-        + (' Plots: plotly.js, © Plotly, Inc., MIT licence.' if is_drawn else '')
+        + (' Plots: plotly.js, © Plotly, Inc., MIT license.' if is_drawn else '')
         + '</footer>'
     )

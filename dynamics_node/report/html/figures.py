@@ -51,7 +51,7 @@ def page_data(report):
                 'joints': [plot_text(body.joint) for body in report.bodies],
                 'bodies': [
                     f'{plot_text(body.link)}<br>{number(body.mass)} kg<br>'
-                    f'centre of mass {vector(body.com, 3)} m'
+                    f'center of mass {vector(body.com, 3)} m'
                     for body in report.bodies
                 ],
             },

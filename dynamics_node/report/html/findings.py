@@ -1,4 +1,4 @@
-"""The findings, the worst first: colour, word and order say how bad each is."""
+"""The findings, the worst first: color, word and order say how bad each is."""
 
 from .escape import span, text
 from .numbers import count

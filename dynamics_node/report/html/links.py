@@ -22,7 +22,7 @@ def links_table(links):
     columns = (
         Column('link'),
         Column('mass', 'kg', True),
-        Column('centre of mass', 'm', True),
+        Column('center of mass', 'm', True),
         Column('principal moments', 'kg m²', True),
         Column('can exist'),
         Column('moved by'),
@@ -49,7 +49,7 @@ def bodies_table(bodies):
         Column('link it moves'),
         Column('fixed to it'),
         Column('mass', 'kg', True),
-        Column('centre of mass', 'm', True),
+        Column('center of mass', 'm', True),
         Column('principal moments', 'kg m²', True),
         Column('can exist'),
     )

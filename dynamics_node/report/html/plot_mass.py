@@ -53,7 +53,7 @@ def _sentence(body, total):
     lines = [plot_text(body.link), f'{number(body.mass)} kg']
     if total > 0.0:
         lines[-1] += f', {number(100.0 * body.mass / total, 3)} % of what moves'
-    lines.append(f'centre of mass {vector(body.com, 3)} m')
+    lines.append(f'center of mass {vector(body.com, 3)} m')
     if body.lumped:
         lines.append(f'with {count(len(body.lumped), "fixed link")}')
     return '<br>'.join(lines)

@@ -1,4 +1,4 @@
-"""What the plots of the page have in common: colours by name, labels, axes."""
+"""What the plots of the page have in common: colors by name, labels, axes."""
 
 from .escape import plot_text
 
@@ -8,7 +8,7 @@ LONGEST = 26  # characters of a name beside a plot; all of it shows under the mo
 
 
 def color(name):
-    """Return a colour of the page's style sheet: light and dark have each their own."""
+    """Return a color of the page's style sheet: light and dark have each their own."""
     return {'css': name}
 
 

@@ -11,7 +11,7 @@ TIGHT = 0.8  # of the limit: what is left above is needed to move
 
 
 def tone(share):
-    """Return the colour of a share of an effort limit, by its name in the style sheet."""
+    """Return the color of a share of an effort limit, by its name in the style sheet."""
     if math.isnan(share):
         return 'faint'
     return 'problem' if share > 1.0 else 'warning' if share > TIGHT else 'accent'

@@ -34,7 +34,7 @@ def scene(model):
     """
     tree = model.tree
     lower, upper = slider_ends(model)
-    bodies = range(len(tree.body_names))
+    bodies = range(len(tree.moving_joint_names))
     efforts = [None if np.isnan(limit) else float(limit) for limit in model.effort_limits]
     return {
         'joints': list(model.joint_names),
@@ -44,13 +44,13 @@ def scene(model):
         'continuous': model.is_continuous.tolist(),
         'prismatic': [kind == PRISMATIC for kind in _kinds(model)],
         'limit': efforts,
-        'body': list(tree.body_names),
+        'body': list(tree.moving_joint_names),
         'parent': tree.parent.tolist(),
-        'slides': [int(value) == PRISMATIC for value in tree.kind],
-        'coordinate': tree.coordinate.tolist(),
+        'slides': [int(value) == PRISMATIC for value in tree.joint_type],
+        'coordinate': tree.q_index.tolist(),
         'multiplier': tree.multiplier.tolist(),
         'offset': tree.offset.tolist(),
-        'placement': tree.placement[:, :3, :].tolist(),
+        'placement': tree.joint_placement[:, :3, :].tolist(),
         'axis': tree.axis.tolist(),
         'mass': [float(tree.inertia[k, 3, 3]) for k in bodies],
         'com': [_com(tree.inertia[k]).tolist() for k in bodies],
@@ -72,7 +72,7 @@ def slider_ends(model):
     Returns
     -------
     lower, upper : numpy.ndarray, shape (n,)
-        rad or m; half a turn or half a metre from the neutral position where there is no limit,
+        rad or m; half a turn or half a meter from the neutral position where there is no limit,
         or one so far away that it says nothing.
 
     """
@@ -95,7 +95,7 @@ def ellipsoid(J):
     Return the solid ellipsoid that has this pseudo-inertia.
 
     A solid ellipsoid of mass m with semi-axes a has the second moments m a² / 5 about the planes
-    through its centre.
+    through its center.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def ellipsoid(J):
 def _kinds(model):
     """Return the kinds of the independent joints, in the order of q."""
     tree = model.tree
-    kinds = dict(zip(tree.body_names, tree.kind.tolist(), strict=True))
+    kinds = dict(zip(tree.moving_joint_names, tree.joint_type.tolist(), strict=True))
     return [kinds[name] for name in model.joint_names]
 
 
@@ -138,7 +138,7 @@ def _sticks(tree):
     for k, parent in enumerate(tree.parent):
         sticks.append([[int(parent), [0.0, 0.0, 0.0]], [k, [0.0, 0.0, 0.0]]])
     carriers = {int(parent) for parent in tree.parent}
-    for k in range(len(tree.body_names)):
+    for k in range(len(tree.moving_joint_names)):
         # The last body of a chain goes on to the farthest of its links, the tool say.
         if k not in carriers:
             tips = [link.placement[:3, 3] for link in tree.links.values() if link.body == k]

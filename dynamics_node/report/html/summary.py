@@ -33,7 +33,7 @@ def summary(report):
 
 
 def _verdict(report):
-    """Return the words of the badge and its colour."""
+    """Return the words of the badge and its color."""
     if report.verdict == 'refused':
         return 'refused', 'problem'
     worst = next((severity for severity, amount in report.counts.items() if amount), 'good')

@@ -4,14 +4,14 @@ from rich.padding import Padding
 from rich.text import Text
 
 
-def findings(report, colours):
+def findings(report, colors):
     """
     Yield the findings, the notes first and the problems last: near the verdict.
 
     Parameters
     ----------
     report : Report
-    colours : dict of str to str
+    colors : dict of str to str
         Style by severity.
 
     """
@@ -19,7 +19,7 @@ def findings(report, colours):
         yield Text('\nFindings', style='bold')
     for finding in reversed(report.findings):
         text = Text()
-        text.append(finding.severity, style=colours[finding.severity])
+        text.append(finding.severity, style=colors[finding.severity])
         text.append(f' [{finding.kind}] ', style='dim')
         text.append(_sentence(finding.what))
         yield text

@@ -33,7 +33,7 @@ def link_table(report):
     made = table(
         ('link', 'left'),
         ('kg', 'right'),
-        ('centre of mass, m', 'right'),
+        ('center of mass, m', 'right'),
         ('principal moments, kg m²', 'right'),
         ('', 'left'),
     )
@@ -67,7 +67,7 @@ def frames_line(report):
 def body_table(report, width):
     """Return what each joint moves, with the links that fixed joints attach."""
     wide = width >= _WIDE
-    more = [('centre of mass, m', 'right'), ('principal moments, kg m²', 'right')] if wide else []
+    more = [('center of mass, m', 'right'), ('principal moments, kg m²', 'right')] if wide else []
     made = table(
         ('joint', 'left'), ('its link + what is fixed to it', 'left'), ('kg', 'right'), *more
     )

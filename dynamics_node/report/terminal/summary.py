@@ -18,7 +18,7 @@ def print_report(report, console=None):
     ----------
     report : Report
     console : rich.console.Console, optional
-        By default standard output, in colours if that is a terminal and NO_COLOR is not set.
+        By default standard output, in colors if that is a terminal and NO_COLOR is not set.
 
     """
     console = console or _Console(highlight=False)

@@ -39,7 +39,7 @@ class Parameters:
         self.logger = node.get_logger()
         self._logged: dict[str, Throttle] = {}
         self.values = check_all(declare(node, PARAMETERS))
-        self._warn_of_misspelt()
+        self._warn_of_misspelled()
 
     def watch(self, on_change, further_check):
         """
@@ -83,7 +83,7 @@ class Parameters:
         if not result.successful:
             raise ParameterError(result.reason)
 
-    def _warn_of_misspelt(self):
+    def _warn_of_misspelled(self):
         # ROS ignores a name that nobody declares; an `effort_limit` would then be no limit.
         names = [parameter.name for parameter in PARAMETERS]
         given = getattr(self._node, '_parameter_overrides', {})  # the only place where they are

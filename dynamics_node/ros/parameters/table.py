@@ -238,7 +238,7 @@ PARAMETERS = (
         'payload.com',
         DOUBLES,
         (0.0, 0.0, 0.0),
-        'Centre of mass of the payload in the frame of its link, m',
+        'Center of mass of the payload in the frame of its link, m',
         length=3,
         low=-1000.0,
         high=1000.0,
@@ -248,7 +248,7 @@ PARAMETERS = (
         DOUBLES,
         (0.0,) * 6,
         'Inertia tensor of the payload about its '
-        'centre of mass along the axes of its link, kg m²: ixx, ixy, ixz, iyy, iyz, izz',
+        'center of mass along the axes of its link, kg m²: ixx, ixy, ixz, iyy, iyz, izz',
         length=6,
     ),
 )

@@ -71,7 +71,7 @@ class Diagnostics:
             text,
             {
                 'joints': ', '.join(robot.joint_names),
-                'moving mass [kg]': f'{robot.model.total_mass:.6g}',
+                'moving mass [kg]': f'{robot.model.moving_mass:.6g}',
                 'gravity [m/s^2]': ', '.join(f'{g:g}' for g in robot.model.gravity),
                 'payload': _payload_in_words(robot.model.payload),
                 **{f'warning {i + 1}': text for i, text in enumerate(warnings)},

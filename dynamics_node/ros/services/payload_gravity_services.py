@@ -153,7 +153,7 @@ def _joints_to(tree, link):
     # Places of the joints between the base and a link, each once.
     body, joints = tree.links[link].body, set()
     while body >= 0:
-        joints.add(int(tree.coordinate[body]))
+        joints.add(int(tree.q_index[body]))
         body = tree.parent[body]
     return sorted(joints)
 

@@ -18,7 +18,7 @@ _STAMP = struct.Struct('<iI')
 
 class JointStateReader:
     """
-    Reads a stream of serialised joint states of the same joints.
+    Reads a stream of serialized joint states of the same joints.
 
     rclpy makes a new message of new strings from every state. A robot's states differ in stamp
     and numbers alone, so frame and names are compared as bytes, and read by rclpy only when
@@ -37,7 +37,7 @@ class JointStateReader:
 
     def read(self, data):
         """
-        Return a serialised joint state as a message.
+        Return a serialized joint state as a message.
 
         Parameters
         ----------

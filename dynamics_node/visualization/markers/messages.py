@@ -81,5 +81,5 @@ def _fill(marker, shape):
     orientation.x, orientation.y, orientation.z, orientation.w = shape.orientation
     marker.scale.x, marker.scale.y, marker.scale.z = shape.size
     color = marker.color
-    color.r, color.g, color.b, color.a = shape.colour
+    color.r, color.g, color.b, color.a = shape.color
     marker.points = [Point(x=x, y=y, z=z) for x, y, z in shape.points]

@@ -1,4 +1,4 @@
-"""Centres of mass outside the robot."""
+"""Centers of mass outside the robot."""
 
 from dynamics_node.report import make_report
 from support.arms import arm, changed
@@ -11,7 +11,7 @@ def findings(text):
     ]
 
 
-def test_millimetres_written_as_metres_are_found():
+def test_millimeters_written_as_meters_are_found():
     [found] = findings(changed(arm(), 'link3', com=[125.0, 0.0, 0.0]))
     assert (found.severity, found.subjects) == ('warning', ('link3',))
     assert '125 m' in found.what and 'a thousandth of that, 0.125 m' in found.effect
@@ -25,7 +25,7 @@ def test_coordinates_of_the_whole_robot_are_found():
     assert found.subjects == ('link5',)
 
 
-def test_a_centre_of_mass_a_little_outside_is_no_finding():
+def test_a_center_of_mass_a_little_outside_is_no_finding():
     assert not findings(changed(arm(), 'link3', com=[0.3, 0.1, 0.0]))
 
 

@@ -83,7 +83,7 @@ def test_7_g_beside_what_is_fixed_to_it_are_found(link):
     [found] = findings(changed(text, link, mass=0.007), 'grams')
     assert found.subjects == (link,) and 'N m' in found.effect
     # 7 kg is no hand; 15 g of a finger do not tell what it weighs either.
-    said = float(found.effect.split('as much as its neighbours, ')[1].removesuffix(' kg'))
+    said = float(found.effect.split('as much as its neighbors, ')[1].removesuffix(' kg'))
     assert 0.5 < said < 2.0
 
 
@@ -137,7 +137,7 @@ def test_a_shape_without_mass_at_the_end_is_a_warning_with_what_it_could_weigh()
     assert f'would be {joint.gravity.magnitude + added:.3g} N m' in found.effect
 
 
-def test_a_shape_without_mass_in_the_middle_may_be_in_its_neighbour():
+def test_a_shape_without_mass_in_the_middle_may_be_in_its_neighbor():
     cover = (
         '<link name="cover"><visual><geometry><sphere radius="1"/></geometry></visual></link>'
         '<joint name="c" type="fixed"><parent link="link2"/><child link="cover"/></joint>'

@@ -152,4 +152,4 @@ def test_rounding_is_not_shown_as_a_moment():
 def test_several_too_large_ones_are_said_in_words():
     text = changed(changed(arm(), 'link3', tensor=2.0), 'link4', tensor=1.5)
     [found] = findings(text, 'inertia_too_large')
-    assert 'as if its mass were 1 m from its centre, in a link of 0.3 m' in found.what
+    assert 'as if its mass were 1 m from its center, in a link of 0.3 m' in found.what

@@ -103,7 +103,7 @@ def test_the_policy_allows_these_scripts_and_no_network(report):
 def test_plotly_is_there_once_and_only_where_something_is_drawn():
     drawn, refused = page(arm7_report()), page(refused_report())
     assert drawn.count('plotly.js v') == 1
-    assert 'Plots: plotly.js, © Plotly, Inc., MIT licence.' in drawn
+    assert 'Plots: plotly.js, © Plotly, Inc., MIT license.' in drawn
     assert 'plotly.js v' not in refused and len(refused) < 60_000
     assert len(page(block_report())) < 60_000
 

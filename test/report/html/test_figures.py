@@ -23,7 +23,7 @@ REPORTS = {
 
 
 def colored(value):
-    """Return a figure with a colour in the place of every name of one."""
+    """Return a figure with a color in the place of every name of one."""
     if isinstance(value, dict):
         return (
             '#123456'

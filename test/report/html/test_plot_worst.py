@@ -16,7 +16,7 @@ def test_the_bars_are_the_worst_torques_and_their_shares():
     assert limits['x'] == [joint.effort for joint in joints]
 
 
-def test_a_joint_over_its_limit_has_another_colour():
+def test_a_joint_over_its_limit_has_another_color():
     report = weak_report()
     share = worst_figure(loaded_joints(report))['data'][0]
     over = [joint.gravity.share > 1.0 for joint in loaded_joints(report)]

@@ -37,8 +37,8 @@ def test_the_scene_is_plain_data_of_the_model():
     model = RobotModel.from_urdf(ARM7)
     told = json.loads(json.dumps(scene(model), allow_nan=False))
     assert told['joints'] == list(model.joint_names)
-    assert sum(told['mass']) == pytest.approx(model.total_mass)
-    assert len(told['body']) == len(model.tree.body_names) == len(told['placement'])
+    assert sum(told['mass']) == pytest.approx(model.moving_mass)
+    assert len(told['body']) == len(model.tree.moving_joint_names) == len(told['placement'])
     assert told['prismatic'] == [name.endswith('slide') for name in model.joint_names]
     assert told['limit'] == model.effort_limits.tolist()
     assert np.all(np.array(told['lower']) <= told['neutral'])
@@ -60,7 +60,7 @@ def test_a_slider_has_ends_where_the_joint_has_none():
 def test_a_stick_goes_to_every_body_and_from_the_base_to_the_first():
     model = RobotModel.from_urdf(ARM7)
     sticks = scene(model)['sticks']
-    assert {body for _, (body, _) in sticks} == set(range(len(model.tree.body_names)))
+    assert {body for _, (body, _) in sticks} == set(range(len(model.tree.moving_joint_names)))
     assert [body for (body, _), _ in sticks].count(-1) == 1
 
 

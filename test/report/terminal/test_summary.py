@@ -10,7 +10,7 @@ from support.arms import arm, changed
 from support.robots import ARM7, public_robot
 
 
-def printed(report, width=80, colours=False):
+def printed(report, width=80, colors=False):
     """Return what is printed."""
     out = io.StringIO()
     print_report(
@@ -19,8 +19,8 @@ def printed(report, width=80, colours=False):
             file=out,
             width=width,
             highlight=False,
-            force_terminal=colours,
-            color_system='standard' if colours else None,
+            force_terminal=colors,
+            color_system='standard' if colors else None,
         ),
     )
     return out.getvalue()
@@ -71,8 +71,8 @@ def test_findings_stand_last_with_the_worst_next_to_the_verdict():
     assert text.rstrip().endswith('arm: not to be trusted; 1 problem, 1 warning, 0 notes')
 
 
-def test_colours_only_where_they_are_wanted(arm7, monkeypatch):
-    assert '\x1b[' in printed(arm7, colours=True)
+def test_colors_only_where_they_are_wanted(arm7, monkeypatch):
+    assert '\x1b[' in printed(arm7, colors=True)
     assert '\x1b[' not in printed(arm7)
     monkeypatch.setenv('NO_COLOR', '1')
     out = io.StringIO()

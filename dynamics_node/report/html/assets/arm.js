@@ -80,7 +80,7 @@ const arm = (() => {
     }
   };
 
-  // Everything that is drawn at a position of the joints, in metres.
+  // Everything that is drawn at a position of the joints, in meters.
   function geometry(robot, q, axisLength) {
     const found = kinematics.poses(robot, q);
     const pose = (body) => (body < 0 ? kinematics.base : found[body]);
@@ -140,7 +140,7 @@ const arm = (() => {
       balls: makeMesh(makeBall(cuts), 'masses', { color: { css: 'mass' }, opacity: 1 }),
       ellipsoids: makeMesh(makeBall(cuts), 'inertia', { color: { css: 'shape' },
         opacity: 0.3 }),
-      centers: { type: 'scatter3d', mode: 'markers', name: 'centres of mass',
+      centers: { type: 'scatter3d', mode: 'markers', name: 'centers of mass',
         hoverinfo: 'text', text: labels.bodies,
         marker: { size: 3, color: { css: 'mass' } } },
       gravity: { type: 'scatter3d', mode: 'lines', name: 'gravity', hoverinfo: 'skip',

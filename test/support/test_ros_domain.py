@@ -6,7 +6,7 @@ import sys
 from support.robots import ROBOTS
 from support.ros_domain import claim, DOMAINS
 
-CODE = 'from support.domains import claim; print(claim())'
+CODE = 'from support.ros_domain import claim; print(claim())'
 
 
 def claimed(chosen):
