@@ -37,19 +37,18 @@ class ExternalTorque:
 
     """
 
-    def __init__(self, node, parameters):
+    def __init__(self, context):
         """
         Create the publisher; off until `configure`.
 
         Parameters
         ----------
-        node : rclpy.node.Node
-        parameters : Parameters
+        context : NodeContext
 
         """
-        self.logger = node.get_logger()
-        self._parameters = parameters
-        self._publisher = node.create_publisher(
+        self.logger = context.logger
+        self._parameters = context.parameters
+        self._publisher = context.node.create_publisher(
             JointState, '~/external_torque', RESULT, event_callbacks=NO_EVENTS
         )
         self._warnings = {what: Throttle(WARN_EVERY) for what in (*_TO_DO, 'rate', 'doubt')}
@@ -80,7 +79,7 @@ class ExternalTorque:
 
         Parameters
         ----------
-        robot : Robot
+        robot : ActiveRobot
             With that state in its buffer.
         stamp : builtin_interfaces.msg.Time
             Of the state, or of its arrival if it says none.
