@@ -151,6 +151,6 @@ def test_every_argument_that_is_used_in_the_documents_exists():
     assert used['demo.launch.py'] >= {'namespace', 'rviz'}
     for file, arguments in used.items():
         declared = set(
-            re.findall(r"DeclareLaunchArgument\('(\w+)'", (ROOT / 'launch' / file).read_text())
+            re.findall(r"DeclareLaunchArgument\(\s*'(\w+)'", (ROOT / 'launch' / file).read_text())
         )
         assert arguments <= declared
