@@ -149,8 +149,8 @@ def _judges(rows):
             '',
             _text(
                 '- Pinocchio sums its C in the base frame, and MuJoCo sums all quantities about '
-                'the center of mass of the whole robot; a light link far from there loses digits in '
-                'the difference of large moments. Here each joint has its own frame.'
+                'the center of mass of the whole robot; a light link far from there loses digits '
+                'in the difference of large moments. Here each joint has its own frame.'
             ),
             _text(
                 '- MuJoCo has no C. The Christoffel matrix is a difference of its bias at several '
