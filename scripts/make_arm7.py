@@ -38,7 +38,7 @@ HEADER = """
   Inertials: every link is a set of homogeneous tubes, cylinders and boxes, listed in a comment
     in the link with size and mass. Densities [kg/m^3]: aluminium tubes and boxes 2700,
     motor modules 3400 (mean of motor, strain wave gear, brake, encoders and housing), hand 1500.
-    Mass, centre of mass and inertia follow from them. Where the tensor is not diagonal in the
+    Mass, center of mass and inertia follow from them. Where the tensor is not diagonal in the
     link's axes it is given in its principal axes, and <origin rpy> turns them.
   Limits: effort, velocity and range are of the class that public data sheets of 7-axis research
     arms give (about 90 N m and 2.2 rad/s at the big joints, 12 to 30 N m at the wrist).
@@ -54,7 +54,7 @@ class Part:
     A homogeneous body, fixed in a link.
 
     A cylinder's size is (outer radius, inner radius, length) along its z axis, a box's its three
-    edges, all in m. `xyz` [m] and `rpy` [rad] place its centre in the link's frame.
+    edges, all in m. `xyz` [m] and `rpy` [rad] place its center in the link's frame.
 
     """
 
@@ -261,7 +261,7 @@ def part_mass(part: Part) -> float:
 
 
 def part_inertia(part: Part) -> np.ndarray:
-    """Return the inertia about the part's own centre, in the link's axes [kg m^2], (3, 3)."""
+    """Return the inertia about the part's own center, in the link's axes [kg m^2], (3, 3)."""
     if part.shape == 'box':
         x, y, z = np.square(part.size)
         moments = np.array([y + z, x + z, x + y]) / 12
@@ -275,7 +275,7 @@ def part_inertia(part: Part) -> np.ndarray:
 
 def link_inertial(parts: tuple[Part, ...]) -> tuple[float, np.ndarray, np.ndarray]:
     """
-    Return mass [kg], centre of mass [m] (3,) and inertia about it [kg m^2] (3, 3) of a link.
+    Return mass [kg], center of mass [m] (3,) and inertia about it [kg m^2] (3, 3) of a link.
 
     The parts add by Steiner's theorem: I = sum(I_k + m_k (d.d 1 - d d^T)), d from com to part.
 

@@ -7,7 +7,7 @@ import inspect
 
 LIBRARY = 'dynamics_node'
 
-# Packages with a face of their own, and for whom. All work without ROS.
+# Packages with public names, with a sentence each. All work without ROS.
 PACKAGES = {
     'dynamics': 'More of the dynamics: what the node needs beside `RobotModel`.',
     'inertia': '4x4 pseudo-inertia matrices of rigid bodies.',

@@ -10,7 +10,7 @@ KINDS = {
     'no_inertial': ((PROBLEM,), 'nothing that moves has a mass'),
     'joint_moves_nothing': ((PROBLEM,), 'a joint beyond which there is no inertia'),
     'shape_without_mass': ((WARNING, NOTE), 'a moving link that can be seen but weighs nothing'),
-    'grams': ((WARNING,), 'a link far lighter than its neighbours or than its inertia asks for'),
+    'grams': ((WARNING,), 'a link far lighter than its neighbors or than its inertia asks for'),
     'triangle_inequality': (
         (PROBLEM, NOTE),
         'principal moments that no real body has, often a missing decimal point',
@@ -21,7 +21,7 @@ KINDS = {
     'placeholder_mass': ((WARNING, NOTE), 'several masses of exactly 1 kg'),
     'identical_inertials': ((WARNING, NOTE), 'one `<inertial>` copied along a chain'),
     'com_at_joint': ((NOTE,), 'a heavy link balanced exactly on its joint'),
-    'far_com': ((WARNING,), 'a centre of mass outside the robot'),
+    'far_com': ((WARNING,), 'a center of mass outside the robot'),
     'missing_gripper': ((WARNING, NOTE), 'a chain that ends without a tool that weighs something'),
     'over_effort_limit': ((WARNING,), 'gravity alone takes more than the effort limit'),
     'no_effort_limit': ((WARNING, NOTE), 'a joint without effort limit'),
