@@ -82,9 +82,9 @@ def _add_kdl(results, missing, python, robots, rounds, say):
     name = answer['name']
     results.libraries[name] = answer['version']
     results.notes[name] = (
-        f'{answer["note"]} Debian builds it for its own Python only, so it ran in a process of '
-        f'its own (Python {answer["python"]}, numpy {answer["numpy"]}) with this library beside '
-        'it: its ratio is of that process.'
+        f'{answer["note"]} Debian builds it for its own Python only, so it ran in a separate '
+        f'process (Python {answer["python"]}, numpy {answer["numpy"]}) together with this '
+        'library: its ratio comes from that process.'
     )
     label = f'{name} (own process)'
     results.single += [

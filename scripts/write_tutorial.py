@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """
-Write into docs/tutorial.md what its commands print now.
+Write the present output of its commands into docs/tutorial.md.
 
-It runs the whole page: two programs and a Python session. After a change of the page or of what
-the node says, in `make shell`:
+It runs the whole page: two programs and a Python session. After a change of the page or of the
+node's log lines, in `make shell`:
 
     python scripts/write_tutorial.py
 
-A line that ends with ' ...' is filled with the line of the program that has what stands before it.
+A line that ends with ' ...' is replaced by the program's line with the same beginning.
 
 """
 

@@ -8,7 +8,7 @@ _FIELD = re.compile(r'^([A-Za-z][\w/\[\]<>=]*)\s+(\w+)\s*(?:=\s*(\S+)\s*)?(?:#\s
 
 @dataclass
 class Field:
-    """A field or a constant (with `value`) of an interface, and what its file says of it."""
+    """A field or a constant (with `value`) of an interface, with its comment."""
 
     kind: str
     name: str
@@ -29,8 +29,8 @@ def read(path):
     """
     Read an interface file.
 
-    A comment above a field, with no blank line between, is that field's, as is one behind it
-    and the indented comments that follow. A comment before the first blank line is about all.
+    A comment belongs to a field if it is directly above it, behind it, or indented below it. A
+    comment before the first blank line describes the whole interface.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def read(path):
     Raises
     ------
     ValueError
-        If there is a line that is none of this, or a field without any comment.
+        If a line is neither a comment nor a field.
 
     """
     interface = Interface(path.stem)

@@ -1,4 +1,4 @@
-"""A program of the tutorial, in a process of its own, and the lines that it prints."""
+"""A program of the tutorial in a separate process, and the lines that it prints."""
 
 import os
 import queue
@@ -9,11 +9,11 @@ import sys
 import threading
 import time
 
-PATIENCE = 60.0  # s; a busy machine takes long to start a node
+PATIENCE = 60.0  # s; a busy machine starts a node slowly
 
 
 class Program:
-    """A command of the page, started as a user starts it."""
+    """A command of the page, started as by a user."""
 
     def __init__(self, command, folder):
         """
@@ -22,9 +22,9 @@ class Program:
         Parameters
         ----------
         command : str
-            Begins with `python`, which is the one that runs this.
+            Begins with `python`, replaced by the running interpreter.
         folder : Path
-            Where it runs.
+            Working directory.
 
         """
         words = shlex.split(command)
@@ -45,7 +45,7 @@ class Program:
 
     def next_line(self, fits):
         """
-        Return the next line that fits, passing over others.
+        Return the next fitting line, and skip all others.
 
         Parameters
         ----------
@@ -58,7 +58,7 @@ class Program:
         Raises
         ------
         AssertionError
-            If none comes within PATIENCE seconds; with the lines that came.
+            If none comes within PATIENCE seconds; lists the skipped lines.
 
         """
         passed, end = [], time.monotonic() + PATIENCE
@@ -70,7 +70,7 @@ class Program:
             if fits(line):
                 return line
             passed.append(line)
-        raise AssertionError('the line did not come; these did:\n' + '\n'.join(passed))
+        raise AssertionError('expected line missing, got:\n' + '\n'.join(passed))
 
     def stop(self):
         """Press Ctrl-C, and wait for the end; returns the exit code."""

@@ -1,4 +1,4 @@
-"""Runs the page from its first block to its last, and puts what is printed into it."""
+"""Runs the page from its first block to its last, and records the output in it."""
 
 import contextlib
 import io
@@ -12,15 +12,14 @@ from .program import Program
 ROOT = Path(__file__).resolve().parents[2]
 _STAMP = re.compile(r'\[\d{9,}\.\d+\]')
 _NUMBER = re.compile(r'-?\d+\.\d+(?:e[-+]?\d+)?')
-# A stated line that ends with this stands for any line that has what is before it.
+# A stated line with this end fits every line that contains the text before it.
 REST = ' ...'
 
 
 class Session:
-    """The programs that run, and the names that Python knows."""
+    """The running programs, and the names of the Python session."""
 
     def __init__(self):
-        """Begin with nothing."""
         self._programs = {}
         self._names = {'__name__': 'tutorial'}
         self._printed = ''
@@ -37,7 +36,7 @@ class Session:
         Returns
         -------
         list of str or Block
-            The same with everything that was printed as it was printed now.
+            The same parts with the present output.
 
         """
         before = Path.cwd()
