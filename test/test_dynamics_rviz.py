@@ -80,8 +80,8 @@ def test_topics_and_their_quality_of_service(display, key, topic):
     assert settings['Reliability Policy'] == 'Reliable'
     latched = settings['Durability Policy'] == 'Transient Local'
     assert latched == (topic == '/robot_description')
-    code = (ROOT / 'dynamics_node' / 'ros' / 'markers' / 'node.py').read_text()
-    assert "declare_parameter('dynamics_node', 'dynamics_node'" in code
+    code = (ROOT / 'dynamics_node' / 'visualization' / 'markers' / 'node.py').read_text()
+    assert re.search(r"declare_parameter\(\s*'dynamics_node',\s*'dynamics_node'", code)
     assert "f'{self._followed.name}/markers'" in code
 
 
