@@ -16,18 +16,6 @@ check_platform() {
     fi
 }
 
-check_cmake() {
-    local version
-    command -v cmake >/dev/null ||
-        die "expected the program cmake, found none: install it (Debian and Ubuntu: apt install cmake)."
-    version=$(cmake --version 2>/dev/null | sed -n '1s/[^0-9]*\([0-9.]*\).*/\1/p')
-    printf '%s\n' 3.21 "${version:-0}" | sort -C -V ||
-        die "expected cmake 3.21 or newer, got '${version:-one that does not run}': install a" \
-            "newer one (Debian and Ubuntu: apt install cmake)."
-    command -v make >/dev/null || command -v gmake >/dev/null ||
-        die "expected the program make, found none: install it (Debian and Ubuntu: apt install make)."
-}
-
 # compiles COMPILER LANGUAGE HEADER: true if it turns an empty program into an executable.
 compiles() {
     printf '#include <%s>\nint main() { return 0; }\n' "$3" |
@@ -47,19 +35,15 @@ check_compiler() {
 }
 
 check_build_tools() {
-    check_cmake
+    local version
+    command -v cmake >/dev/null ||
+        die "expected the program cmake, found none: install it (Debian and Ubuntu: apt install cmake)."
+    version=$(cmake --version 2>/dev/null | sed -n '1s/[^0-9]*\([0-9.]*\).*/\1/p')
+    printf '%s\n' 3.21 "${version:-0}" | sort -C -V ||
+        die "expected cmake 3.21 or newer, got '${version:-one that does not run}': install a" \
+            "newer one (Debian and Ubuntu: apt install cmake)."
+    command -v make >/dev/null || command -v gmake >/dev/null ||
+        die "expected the program make, found none: install it (Debian and Ubuntu: apt install make)."
     check_compiler c stdio.h "${CC:-cc gcc clang}" C
     check_compiler c++ string "${CXX:-c++ g++ clang++}" C++
-}
-
-# The smallest of the packages that are needed in any case stands for all of them.
-check_network() {
-    local constraints=$1 folder code=0
-    folder=$(mktemp -d)
-    "$venv/bin/python" -m pip --disable-pip-version-check --retries 1 --timeout 15 download \
-        --quiet --no-deps --no-cache-dir -d "$folder" -c "$constraints" yourdfpy \
-        </dev/null >>"$setup_log" 2>&1 || code=$?
-    rm -rf "$folder"
-    ((code == 0)) || die "packages cannot be had from PyPI: check the network and pip's proxy and" \
-        "index settings (pip's own words are in $setup_log), then run the same command again."
 }
