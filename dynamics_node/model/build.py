@@ -8,7 +8,6 @@ from .tip_link import tip_link
 from .tree import KinematicTree, LinkFrame, PRISMATIC, REVOLUTE
 from ..errors import RobotDescriptionError
 from ..inertia import combine
-from ..urdf.inertial import link_pseudo_inertia
 from ..urdf.validation import LARGEST
 
 
@@ -100,7 +99,7 @@ def _lumped(description, links, count):
         if link.inertial is None:
             continue
         frame = links[link.name]
-        parts[frame.body].append((link_pseudo_inertia(link.inertial), frame.placement))
+        parts[frame.body].append((link.inertial.pseudo_inertia, frame.placement))
     return np.array([combine(bodies) for bodies in parts])
 
 

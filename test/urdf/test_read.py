@@ -111,6 +111,35 @@ def test_nothing_is_opened_whatever_the_addresses_say():
     assert run.returncode == 0, run.stderr
 
 
+def test_yourdfpy_is_loaded_with_the_first_robot_and_in_silence():
+    run = subprocess.run(
+        [
+            sys.executable,
+            '-W',
+            'default',
+            '-c',
+            'import logging, sys\n'
+            'logging.basicConfig(level=logging.DEBUG)\n'
+            'from dynamics_node.urdf import read_urdf\n'
+            'assert "yourdfpy" not in sys.modules and "trimesh" not in sys.modules\n'
+            f'read_urdf({random_urdf(1)!r})\n'
+            'assert "yourdfpy" in sys.modules\n',
+        ],
+        capture_output=True,
+        text=True,
+        cwd=Path(__file__).parents[2],
+        check=False,
+    )
+    assert (run.returncode, run.stdout, run.stderr) == (0, '', '')
+
+
+def test_a_link_has_one_read_only_pseudo_inertia():
+    inertial = read_urdf(two_links()).links[1].inertial
+    matrix = inertial.pseudo_inertia
+    assert matrix is inertial.pseudo_inertia and not matrix.flags.writeable
+    np.testing.assert_allclose(matrix[:3, 3], [0, 0, 0.1])
+
+
 def test_what_dynamics_does_not_need_does_not_matter():
     assert read_urdf(
         two_links(

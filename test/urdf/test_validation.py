@@ -7,6 +7,7 @@ from dynamics_node.urdf import read_urdf
 from dynamics_node.urdf.validation import is_number
 import numpy as np
 import pytest
+import yourdfpy  # noqa: F401  (its import is not part of the measured times)
 
 ROBOT = (
     '<robot name="r"><link name="a"/><link name="b"><inertial><origin xyz="{place}"/>'
