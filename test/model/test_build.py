@@ -103,3 +103,24 @@ def test_mimic_joints_that_multiply_beyond_all_robots_are_refused():
     chain(leader, follower, ('revolute', 'joint="j1" multiplier="1e10"'))
     with pytest.raises(RobotDescriptionError, match=r'joint j2: multiplier .* most 1e.30, got'):
         chain(leader, follower, ('revolute', 'joint="j1" multiplier="1e20"'))
+
+
+def test_joint_types_and_supporting_joints_of_a_branching_robot_with_mimic_joints():
+    description = read_urdf(random_urdf(3, joints=8))
+    tree = build_tree(description)
+    joint_of = {joint.child: joint for joint in description.joints}
+    for name, is_prismatic in zip(tree.moving_joint_names, tree.is_prismatic, strict=True):
+        [kind] = [joint.kind for joint in description.joints if joint.name == name]
+        assert is_prismatic == (kind == 'prismatic')
+    by_name = {joint.name: joint for joint in description.joints}
+    for link in tree.links:
+        leaders, end = set(), link
+        while end in joint_of:
+            joint = joint_of[end]
+            end = joint.parent
+            while joint.mimic:
+                joint = by_name[joint.mimic.leader]
+            leaders |= {joint.name} if joint.is_movable else set()
+        assert tree.supporting_joints(link) == sorted(map(tree.joint_names.index, leaders))
+    with pytest.raises(KeyError):
+        tree.supporting_joints('nothing')
