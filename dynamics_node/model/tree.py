@@ -110,7 +110,7 @@ class KinematicTree:
     @property
     def is_prismatic(self) -> NDArray[np.bool_]:
         """True for bodies that slide along their axis, bool, shape (N,); the others turn."""
-        return self.joint_type == PRISMATIC
+        return np.equal(self.joint_type, PRISMATIC)
 
     @property
     def mimic_matrix(self) -> NDArray[np.float64]:

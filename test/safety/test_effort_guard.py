@@ -12,7 +12,7 @@ from dynamics_node.safety.effort_guard import (
     GuardSettings,
     LONGEST_FADE,
     LONGEST_STEP,
-    LOOK_EVERY,
+    MAX_TICK,
     NEAR,
     OWN_STALL,
 )
@@ -33,8 +33,8 @@ class Bench:
         self.guard = EffortGuard(
             settings, lambda state, reason: self.states.append(state.name), obstacle
         )
-        self.now, self.outputs, self._next_look = 100.0, [], 0.0
-        self.look()
+        self.now, self.outputs, self._next_tick = 100.0, [], 0.0
+        self.tick()
         if is_found:
             self.guard.source_appeared(self.now)
             self.wait(0.2)
@@ -47,9 +47,9 @@ class Bench:
     def last(self):
         return self.outputs[-1][1] if self.outputs else None
 
-    def look(self):
-        self._record(self.guard.look(self.now))
-        self._next_look = self.now + self.guard.next_look(self.now)
+    def tick(self):
+        self._record(self.guard.tick(self.now))
+        self._next_tick = self.now + self.guard.next_tick_in(self.now)
 
     def send(self, *efforts):
         """Send one command; return what comes out."""
@@ -58,9 +58,9 @@ class Bench:
     def wait(self, seconds):
         """Let time pass, and the guard look whenever it wants to."""
         end = self.now + seconds
-        while self._next_look <= end:
-            self.now = max(self.now, self._next_look)
-            self.look()
+        while self._next_tick <= end:
+            self.now = max(self.now, self._next_tick)
+            self.tick()
         self.now = end
 
     def stream(self, seconds, efforts=FULL, period=PERIOD):
@@ -233,7 +233,7 @@ def test_commands_that_come_slowly_are_told_of_with_their_period(bench):
 
 def test_a_command_that_waits_behind_a_late_look_is_in_time(active):
     active.freeze(SETTINGS.timeout + 0.01)
-    active.look()
+    active.tick()
     assert active.send(*FULL) is not None
     active.wait(PERIOD)
     assert active.state == 'ACTIVE' and active.guard.fades == 0
@@ -370,7 +370,7 @@ def test_at_its_own_end_it_fades_whatever_comes(active, within):
     begin = active.now
     active.guard.end(begin, within, 'SIGTERM')
     before = len(active.outputs)
-    active.look()
+    active.tick()
     active.stream(1.0)
     fade = active.outputs[before:]
     assert is_fading([output for _, output in fade])
@@ -380,7 +380,7 @@ def test_at_its_own_end_it_fades_whatever_comes(active, within):
 
 def test_its_own_end_may_be_hurried(active):
     active.guard.end(active.now, 2.5, 'SIGINT')
-    active.look()
+    active.tick()
     active.wait(0.1)
     active.guard.end(active.now, 0.1, 'SIGINT again')
     active.wait(0.13)
@@ -400,7 +400,7 @@ def test_after_its_own_standstill_it_approaches_the_commands(active):
     other = (20.0, 8.0, 0.0)
     active.send(*other)
     assert active.state == 'STARTING' and 'stood still for 1.0' in active.guard.reason
-    active.look()
+    active.tick()
     active.stream(1.2, other)
     assert active.state == 'ACTIVE' and active.last == list(other)
     outputs = [FULL] + [output for _, output in active.outputs[before:]]
@@ -413,7 +413,7 @@ def test_after_its_own_standstill_it_approaches_the_commands(active):
 
 def test_after_its_own_standstill_commands_that_are_the_same_pass(active):
     active.freeze(1.0)
-    active.look()
+    active.tick()
     active.send(*FULL)
     assert active.state == 'ACTIVE' and active.last == list(FULL)
 
@@ -422,7 +422,7 @@ def test_a_standstill_in_a_fade_makes_no_step(active):
     active.wait(0.1)
     before = active.last
     active.freeze(1.0)
-    active.look()
+    active.tick()
     assert before[0] - active.last[0] <= FULL[0] * LONGEST_STEP / SETTINGS.stop_ramp + 1e-9
     active.wait(1.0)
     assert active.last == [0.0] * 3
@@ -470,10 +470,10 @@ class Judge(Bench):
         super().__init__(settings)
         self.guard.joint_count = 2
 
-    def look(self):
+    def tick(self):
         before = list(self.force)
         self.input = None
-        super().look()
+        super().tick()
         # A look never starts and never enlarges an effort, and its steps are small.
         ramp = self.guard.settings.stop_ramp
         for last, new, largest in zip(before, self.force, self.scale, strict=True):
@@ -531,7 +531,7 @@ def test_whatever_comes_no_effort_starts_by_itself_and_every_silence_ends_at_zer
             judge.freeze(value)
         elif kind == 'late':
             judge.freeze(value)
-            judge.look()
+            judge.tick()
         elif kind == 'reset':
             judge.guard.reset(judge.now)
         else:
@@ -539,10 +539,10 @@ def test_whatever_comes_no_effort_starts_by_itself_and_every_silence_ends_at_zer
     longest = max(
         [SETTINGS.stop_ramp] + [abs(effort) / rate for effort, rate in zip(judge.force, rates)]
     )
-    judge.wait(SETTINGS.timeout + LOOK_EVERY + CONFIRM_AFTER + longest + 3 * FADE_PERIOD)
+    judge.wait(SETTINGS.timeout + MAX_TICK + CONFIRM_AFTER + longest + 3 * FADE_PERIOD)
     assert judge.force == [0.0, 0.0] and not judge.guard.has_effort
     assert judge.state in ('READY', 'FAULT')
 
 
 def test_it_notices_its_own_standstill_later_than_it_looks():
-    assert OWN_STALL >= 2 * LOOK_EVERY
+    assert OWN_STALL >= 2 * MAX_TICK
