@@ -39,7 +39,7 @@ def inertial_findings(
     if inertial.mass < 0.0:
         problems.append(f"link '{name}': mass is {inertial.mass:.6g} kg, must be >= 0")
     tolerance = rounding_of(inertial.pseudo_inertia)
-    principal = np.linalg.eigvalsh(inertial.tensor)
+    principal = np.asarray(np.linalg.eigvalsh(inertial.tensor), dtype=float)
     findings = [
         f"link '{name}': inertia is not physical: {violation}"
         for violation in tensor_violations(principal, tolerance)
