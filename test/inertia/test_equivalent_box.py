@@ -63,7 +63,7 @@ def test_mujoco_finds_the_same_axes_and_moments(seed):
     assert np.abs(np.sum(theirs * found.pose[:3, :3], axis=0)) == pytest.approx(1.0, abs=1e-8)
 
 
-def test_a_box_is_its_own():
+def test_the_equivalent_box_of_a_box_is_the_box():
     J = box(3.0, (0.1, 0.2, 0.3))
     found = equivalent_box(J)
     assert found.size == pytest.approx([0.1, 0.2, 0.3])
@@ -80,14 +80,14 @@ def test_flat_and_thin_bodies_have_no_thickness(tensor, flat):
     assert (found.size < 1e-7).sum() == flat
 
 
-def test_what_is_no_body_has_no_box():
+def test_an_impossible_body_has_no_box():
     with pytest.raises(InertiaError, match='triangle inequality'):
         equivalent_box(pseudo_inertia(1.0, (0, 0, 0), np.diag([0.1, 0.1, 0.3])))
     with pytest.raises(InertiaError, match='mass is 0 kg, expected > 0'):
         equivalent_box(np.zeros((4, 4)))
 
 
-def test_it_differs_from_other_solids():
+def test_the_equivalent_box_of_other_solids_has_another_size():
     # A test of the test: a cylinder's box is not as long as the cylinder.
     assert equivalent_box(cylinder(1.0, 0.05, 0.4)).size[2] == pytest.approx(0.4)
     assert equivalent_box(cylinder(1.0, 0.05, 0.4)).size[0] == pytest.approx(np.sqrt(3) * 0.05)

@@ -4,7 +4,7 @@ from dynamics_node.inertia import pseudo_inertia_by_integration
 import numpy as np
 
 
-def test_a_density_that_varies_is_integrated():
+def test_a_variable_density_is_integrated():
     # Density x over the unit cube: moments are products of ∫x^a dx = 1 / (a + 1).
     J = pseudo_inertia_by_integration(lambda x, y, z: x, (0, 1), (0, 1), (0, 1))
     np.testing.assert_allclose(
@@ -19,7 +19,7 @@ def test_a_density_that_varies_is_integrated():
     )
 
 
-def test_more_nodes_do_not_change_the_answer():
+def test_more_nodes_do_not_change_the_result():
     def limits(x, y):
         return -np.sqrt(1 - y**2), np.sqrt(1 - y**2)
 

@@ -85,6 +85,6 @@ def test_solids_are_physical_and_can_be_placed():
         (lambda: box(1, (1, 1)), 'size'),
     ],
 )
-def test_a_size_that_no_solid_has_is_named(call, name):
+def test_a_size_that_is_not_positive_is_refused_by_name(call, name):
     with pytest.raises(ArgumentError, match=name):
         call()

@@ -93,12 +93,12 @@ def test_a_moving_body_without_mass_is_listed():
     assert not any('without mass' in warning for warning in warnings)
 
 
-def test_a_long_chain_does_not_meet_the_recursion_limit():
+def test_a_chain_longer_than_the_recursion_limit_is_built():
     tree = chain(*[('revolute' if i % 100 == 0 else 'fixed', '') for i in range(999)])
     assert len(tree.moving_joint_names) == 10
 
 
-def test_mimic_joints_that_multiply_beyond_all_robots_are_refused():
+def test_products_of_mimic_multipliers_above_1e30_are_refused():
     leader, follower = ('revolute', ''), ('revolute', 'joint="j0" multiplier="1e20"')
     chain(leader, follower, ('revolute', 'joint="j1" multiplier="1e10"'))
     with pytest.raises(RobotDescriptionError, match=r'joint j2: multiplier .* most 1e.30, got'):

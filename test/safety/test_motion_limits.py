@@ -53,12 +53,12 @@ def test_whole_turns_of_a_wheel_are_no_step(turns, step):
     st.floats(allow_nan=False, allow_infinity=False),
     st.floats(-1, 1),
 )
-def test_no_two_numbers_make_it_raise(joint, before, after, dt):
+def test_is_impossible_never_raises(joint, before, after, dt):
     LIMITS.is_impossible(joint, before, after, dt)
     LIMITS.describe_jump(joint, before, after, dt)
 
 
-def test_of_a_joint_without_limits_everything_is_believed():
+def test_every_step_of_a_joint_without_limits_is_possible():
     assert not LIMITS.is_impossible(2, 0.0, 1e6, 0.0)
     assert LIMITS.runaway((2,), (0.0, 0.0, 1e6)) == ''
     everything = MotionLimits.none(('a',))

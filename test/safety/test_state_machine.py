@@ -12,7 +12,7 @@ def machine():
     return OutputStateMachine(lambda state, reason: heard.append((state.name, reason))), heard
 
 
-def test_every_change_is_told_once_with_its_reason():
+def test_every_change_is_reported_once_with_its_reason():
     unit, heard = machine()
     unit.enter(OutputState.STARTING, 'enabled')
     unit.enter(OutputState.STARTING, 'enabled')
@@ -23,7 +23,7 @@ def test_every_change_is_told_once_with_its_reason():
     assert unit.name == 'ACTIVE'
 
 
-def test_the_first_fault_is_the_one_that_stays():
+def test_the_first_fault_is_latched():
     unit, heard = machine()
     unit.latch('first')
     unit.latch('second')
@@ -35,7 +35,7 @@ def test_the_first_fault_is_the_one_that_stays():
     assert not unit.is_on
 
 
-def test_an_observer_that_fails_changes_nothing(caplog):
+def test_a_failing_observer_has_no_effect(caplog):
     def fail(state, reason):
         raise RuntimeError('publisher is gone')
 
@@ -46,7 +46,7 @@ def test_an_observer_that_fails_changes_nothing(caplog):
 
 
 @given(st.lists(st.sampled_from(list(OutputState)), max_size=20))
-def test_what_is_on_is_what_sends(states):
+def test_the_output_is_on_in_the_states_with_commands(states):
     unit, _ = machine()
     for state in states:
         unit.enter(state, 'test')

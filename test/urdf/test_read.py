@@ -34,7 +34,7 @@ def problems(text):
     return caught.value.problems
 
 
-def test_values_arrive_in_plain_data():
+def test_values_are_returned_as_plain_data():
     robot = read_urdf(
         two_links(
             '<origin xyz="1 2 3" rpy="0 0 1.5707963267948966"/><axis xyz="0 0 1"/>'
@@ -55,7 +55,7 @@ def test_values_arrive_in_plain_data():
     assert robot.warnings == ()
 
 
-def test_meshes_are_never_looked_at(tmp_path):
+def test_meshes_are_never_opened(tmp_path):
     mesh = (
         '<visual><geometry><mesh filename="{}"/></geometry></visual>'
         '<collision><geometry><mesh filename="{}"/></geometry></collision>'
@@ -71,7 +71,7 @@ def test_meshes_are_never_looked_at(tmp_path):
         assert read_urdf(text).links[1].inertial.mass == 1.0
 
 
-def test_nothing_is_opened_whatever_the_addresses_say():
+def test_no_address_opens_a_file_or_socket():
     # In a process of its own: an audit hook stays for ever. Once before, for what is loaded once.
     mesh = '<mesh filename="{}"/>'
     parts = ''.join(
@@ -111,7 +111,7 @@ def test_nothing_is_opened_whatever_the_addresses_say():
     assert run.returncode == 0, run.stderr
 
 
-def test_yourdfpy_is_loaded_with_the_first_robot_and_in_silence():
+def test_the_first_robot_loads_yourdfpy_without_output():
     run = subprocess.run(
         [
             sys.executable,
@@ -140,7 +140,7 @@ def test_a_link_has_one_read_only_pseudo_inertia():
     np.testing.assert_allclose(matrix[:3, 3], [0, 0, 0.1])
 
 
-def test_what_dynamics_does_not_need_does_not_matter():
+def test_other_elements_are_ignored():
     assert read_urdf(
         two_links(
             more='<gazebo><x y="z"/></gazebo><transmission/>'
@@ -150,7 +150,7 @@ def test_what_dynamics_does_not_need_does_not_matter():
     )
 
 
-def test_what_belongs_to_other_name_spaces_reaches_no_other_parser(caplog):
+def test_other_name_spaces_are_removed_before_yourdfpy(caplog):
     # xml:id must be a name, and lxml reads the text once more, its way, where it is none.
     text = two_links(
         '<axis xyz="0 0 1" xml:id="1 2"/><x:axis xmlns:x="a b" xyz="1 0 0"/>',
@@ -184,7 +184,7 @@ def test_what_belongs_to_other_name_spaces_reaches_no_other_parser(caplog):
         ('<robot name="r">&undefined;</robot>', 'it is not XML: undefined entity'),
     ],
 )
-def test_hopeless_text_is_refused_before_parsing(text, message):
+def test_unreadable_text_is_refused_before_yourdfpy(text, message):
     with pytest.raises(RobotDescriptionError, match=message):
         read_urdf(text)
 
@@ -221,7 +221,7 @@ def test_an_attribute_that_is_missing_is_named(attribute):
 
 
 @pytest.mark.parametrize('value', ['1', '-0.5', '+2.', '.5', '1e-3', ' 7 ', '1E+2'])
-def test_numbers_as_people_write_them_are_taken(value):
+def test_usual_notations_of_numbers_are_accepted(value):
     robot = read_urdf(two_links(inertial=INERTIAL.replace('0 0 0.1', f'0 0 {value}')))
     assert robot.links[1].inertial.placement[2, 3] == float(value)
 
@@ -278,7 +278,7 @@ def link_pairs(*pairs):
         (link_pairs(('r', 'x'), ('a', 'b'), ('b', 'a')), 'form a cycle'),
     ],
 )
-def test_what_is_not_one_tree_is_refused(text, message):
+def test_links_that_are_not_one_tree_are_refused(text, message):
     assert any(message in problem for problem in problems(text))
 
 
@@ -303,7 +303,7 @@ def mimics(**leaders):
         (mimics(j='j'), "mimic joints form a cycle: 'j' -> 'j'"),
     ],
 )
-def test_mimic_joints_must_lead_somewhere(text, message):
+def test_mimic_joints_must_end_at_a_movable_joint(text, message):
     assert message in problems(text)
 
 
@@ -370,12 +370,12 @@ def test_unknown_effort_and_velocity_limits_are_nan(limit):
     assert (joint.lower, joint.upper) == (-np.inf, np.inf)
 
 
-def test_something_that_is_no_description_is_refused():
+def test_a_source_of_another_type_is_refused():
     with pytest.raises(RobotDescriptionError, match='expected URDF text or a path, got int'):
         read_urdf(7)
 
 
-def test_a_description_comes_from_a_path_with_spaces(tmp_path):
+def test_a_path_may_contain_spaces(tmp_path):
     path = tmp_path / 'my robot.urdf'
     path.write_text(random_urdf(1))
     assert read_urdf(path).name == read_urdf(str(path)).name == 'random'
@@ -383,7 +383,7 @@ def test_a_description_comes_from_a_path_with_spaces(tmp_path):
         read_urdf(str(tmp_path))
 
 
-def test_what_was_forgotten_to_expand_is_refused():
+def test_xacro_is_refused():
     [problem] = problems(
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
         '<xacro:include filename="a"/><link name="a"/></robot>'
@@ -426,7 +426,7 @@ def test_what_was_forgotten_to_expand_is_refused():
         '<:/>',
     ],
 )
-def test_prefixes_that_nothing_declares_are_left_out_as_urdfdom_does(attribute, element):
+def test_undeclared_prefixes_are_ignored_as_by_urdfdom(attribute, element):
     limit = '<limit lower="-1" upper="2" effort="30" velocity="2"/>'
     plain = two_links('<axis xyz="0 0 1"/>' + limit)
     text = plain.replace('<limit', f'<limit {attribute}').replace('</robot>', f'{element}</robot>')
@@ -455,7 +455,7 @@ def test_a_default_name_space_does_not_hide_the_robot():
         '<!DOCTYPE r [<!ATTLIST link a:b CDATA "1">]><robot name="r"><link name="a"/></robot>',
     ],
 )
-def test_what_is_no_xml_or_too_deep_is_refused_with_prefixes_too(text):
+def test_invalid_or_deep_xml_with_prefixes_is_refused(text):
     assert len(problems(text)) == 1
 
 
