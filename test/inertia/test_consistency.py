@@ -1,4 +1,4 @@
-"""The judgment on pseudo-inertia matrices: which violations are found and how they are named."""
+"""Physical consistency of pseudo-inertia matrices: violations and their messages."""
 
 from dynamics_node import ArgumentError, InertiaError
 from dynamics_node.inertia import (

@@ -1,4 +1,4 @@
-"""J: built, taken apart, moved and added."""
+"""Pseudo-inertia matrices: built, decomposed, transformed and added."""
 
 from dynamics_node import ArgumentError
 from dynamics_node.inertia import (

@@ -1,10 +1,9 @@
-"""The tree of moving bodies: lumping, order, mimic, and where every link went."""
+"""The tree of moving bodies: lumping, order, mimic joints, and the place of every link."""
 
 from dynamics_node import RobotDescriptionError
 from dynamics_node.inertia import combine
 from dynamics_node.model import build_tree
 from dynamics_node.urdf import read_urdf
-from dynamics_node.urdf.inertial import link_pseudo_inertia
 import numpy as np
 import pytest
 from support.robots import random_urdf
@@ -53,7 +52,7 @@ def test_a_body_is_the_sum_of_its_links():
     tree = build_tree(description)
     for body in range(len(tree.moving_joint_names)):
         parts = [
-            (link_pseudo_inertia(link.inertial), tree.links[link.name].placement)
+            (link.inertial.pseudo_inertia, tree.links[link.name].placement)
             for link in description.links
             if link.inertial and tree.links[link.name].body == body
         ]

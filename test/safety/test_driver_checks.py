@@ -14,10 +14,10 @@ LIMITS = (90.0, 40.0, 10.0)
 G = np.array([-40.0, 15.0, 0.5])  # N m
 
 
-def rest(unit, effort, torque=G, seconds=2.5, start=0.0, velocity=0.001):
-    """Let the arm stand for a time; return whether a rest was judged."""
+def rest(check, effort, torque=G, seconds=2.5, start=0.0, velocity=0.001):
+    """Let the arm rest for a time; return whether the rest was judged."""
     judged = [
-        unit.update(time, np.full(len(torque), velocity), np.array(effort), torque)
+        check.update(time, np.full(len(torque), velocity), np.array(effort), torque)
         for time in start + np.arange(0.0, seconds, 0.1)
     ]
     return any(judged)
@@ -29,9 +29,9 @@ def rest(unit, effort, torque=G, seconds=2.5, start=0.0, velocity=0.001):
     ids=['torque', 'payload', 'lighter', 'contact'],
 )
 def test_plausible_efforts_give_no_warning(effort):
-    unit = EffortPlausibility(NAMES, LIMITS)
-    assert rest(unit, effort)
-    assert unit.warning == ''
+    check = EffortPlausibility(NAMES, LIMITS)
+    assert rest(check, effort)
+    assert check.warning == ''
 
 
 @pytest.mark.parametrize(
@@ -40,37 +40,37 @@ def test_plausible_efforts_give_no_warning(effort):
     ids=['zeros', 'other sign', 'current', 'thousandths', 'without gravity'],
 )
 def test_implausible_efforts_give_a_warning_with_both_numbers(effort):
-    unit = EffortPlausibility(NAMES, LIMITS)
-    assert rest(unit, effort)
-    assert unit.warning == (
+    check = EffortPlausibility(NAMES, LIMITS)
+    assert rest(check, effort)
+    assert check.warning == (
         f'shoulder reports {effort[0] + 0.0:.4g} at rest, where the model says that -40 holds it'
     )
 
 
 def test_the_warning_disappears_with_plausible_efforts():
-    unit = EffortPlausibility(NAMES, LIMITS)
-    rest(unit, 0.0 * G)
-    assert unit.warning
-    assert rest(unit, G, start=3.0)
-    assert unit.warning == ''
+    check = EffortPlausibility(NAMES, LIMITS)
+    rest(check, 0.0 * G)
+    assert check.warning
+    assert rest(check, G, start=3.0)
+    assert check.warning == ''
 
 
 def test_there_is_no_judgment_before_the_arm_has_rested():
-    unit = EffortPlausibility(NAMES, LIMITS)
-    assert not rest(unit, 0.0 * G, seconds=1.9)
-    assert not unit.update(2.0, np.array([0.0, 0.0, 0.1]), 0.0 * G, G)  # it moves
-    assert not rest(unit, 0.0 * G, start=2.1, seconds=1.9)
-    assert unit.warning == ''
+    check = EffortPlausibility(NAMES, LIMITS)
+    assert not rest(check, 0.0 * G, seconds=1.9)
+    assert not check.update(2.0, np.array([0.0, 0.0, 0.1]), 0.0 * G, G)  # it moves
+    assert not rest(check, 0.0 * G, start=2.1, seconds=1.9)
+    assert check.warning == ''
 
 
 def test_forget_begins_a_new_rest_and_keeps_the_warning():
-    unit = EffortPlausibility(NAMES, LIMITS)
-    rest(unit, 0.0 * G)
-    unit.forget()
-    rest(unit, G, start=3.0, seconds=1.9)
-    unit.forget()
-    assert not rest(unit, G, start=5.0, seconds=1.9)
-    assert unit.warning
+    check = EffortPlausibility(NAMES, LIMITS)
+    rest(check, 0.0 * G)
+    check.forget()
+    rest(check, G, start=3.0, seconds=1.9)
+    check.forget()
+    assert not rest(check, G, start=5.0, seconds=1.9)
+    assert check.warning
 
 
 @pytest.mark.parametrize(
@@ -79,25 +79,25 @@ def test_forget_begins_a_new_rest_and_keeps_the_warning():
     ids=['of their limits', 'without limits'],
 )
 def test_joints_with_little_gravity_torque_are_not_judged(torque, limits):
-    unit = EffortPlausibility(NAMES, limits)
-    assert not rest(unit, np.zeros(3), np.array(torque))
-    assert unit.warning == ''
-    assert rest(unit, np.zeros(3), 1.2 * np.array(torque), start=3.0)
-    assert unit.warning
+    check = EffortPlausibility(NAMES, limits)
+    assert not rest(check, np.zeros(3), np.array(torque))
+    assert check.warning == ''
+    assert rest(check, np.zeros(3), 1.2 * np.array(torque), start=3.0)
+    assert check.warning
 
 
 def test_the_joint_nearest_to_its_limit_is_named():
-    unit = EffortPlausibility(NAMES, LIMITS)
-    rest(unit, [-40.0, 0.0, 0.0], np.array([-40.0, 30.0, 0.5]))
-    assert unit.warning.startswith('elbow reports 0 at rest')
+    check = EffortPlausibility(NAMES, LIMITS)
+    rest(check, [-40.0, 0.0, 0.0], np.array([-40.0, 30.0, 0.5]))
+    assert check.warning.startswith('elbow reports 0 at rest')
 
 
 def test_noise_is_averaged():
     rng = np.random.default_rng(0)
-    unit = EffortPlausibility(NAMES, LIMITS)
-    judged = [unit.update(0.002 * i, np.zeros(3), rng.normal(G, 30.0), G) for i in range(1200)]
+    check = EffortPlausibility(NAMES, LIMITS)
+    judged = [check.update(0.002 * i, np.zeros(3), rng.normal(G, 30.0), G) for i in range(1200)]
     assert any(judged)
-    assert unit.warning == ''
+    assert check.warning == ''
 
 
 URDF = (

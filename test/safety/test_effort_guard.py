@@ -1,4 +1,4 @@
-"""The effort guard without ROS: what passes, what fades, and what begins."""
+"""The effort guard without ROS: passing, fading and the begin of commands."""
 
 from array import array
 from dataclasses import replace
@@ -26,7 +26,7 @@ PERIOD = 0.01
 
 
 class Bench:
-    """A guard on a clock that the test turns; everything it returns is recorded."""
+    """A guard with a simulated clock; all outputs are recorded."""
 
     def __init__(self, settings=SETTINGS, obstacle=None, is_found=True):
         self.states = []
@@ -52,11 +52,11 @@ class Bench:
         self._next_tick = self.now + self.guard.next_tick_in(self.now)
 
     def send(self, *efforts):
-        """Send one command; return what comes out."""
+        """Send one command; return the output."""
         return self._record(self.guard.on_command(self.now, array('d', efforts)))
 
     def wait(self, seconds):
-        """Let time pass, and the guard look whenever it wants to."""
+        """Let time pass, with all ticks of the guard."""
         end = self.now + seconds
         while self._next_tick <= end:
             self.now = max(self.now, self._next_tick)
@@ -70,7 +70,7 @@ class Bench:
             self.wait(period)
 
     def start(self, efforts=FULL, ramp=0.5):
-        """Send what the node sends when it is enabled."""
+        """Send the start ramp of the node."""
         steps = round(ramp / PERIOD)
         for i in range(1, steps + 1):
             self.send(*(i / steps * effort for effort in efforts))
@@ -78,7 +78,7 @@ class Bench:
         assert self.state == 'ACTIVE'
 
     def freeze(self, seconds):
-        """Let time pass without the guard running."""
+        """Let time pass while the guard stands still."""
         self.now += seconds
 
     def _record(self, output):
@@ -100,7 +100,7 @@ def active(bench):
 
 
 def is_fading(outputs, start=FULL):
-    """Tell whether outputs go to zero in proportion, none larger than the one before."""
+    """Tell whether outputs decrease monotonically and in proportion."""
     factors = [output[0] / start[0] for output in outputs]
     return factors == sorted(factors, reverse=True) and all(
         output == pytest.approx([factor * effort for effort in start])
@@ -255,7 +255,7 @@ def test_commands_that_go_on_after_a_fade_do_not_pass(faded):
     assert len(faded.outputs) == before
     assert faded.state == 'FAULT'
     assert 'commands begin with up to 40, too far from zero' in faded.guard.reason
-    assert faded.states.count('FAULT') == 2  # which is not told with every command
+    assert faded.states.count('FAULT') == 2  # not repeated with every command
 
 
 def test_their_ramp_to_zero_does_not_pass_but_the_start_after_it_does(faded):
@@ -272,7 +272,7 @@ def test_their_ramp_to_zero_does_not_pass_but_the_start_after_it_does(faded):
 
 
 def test_a_new_source_that_begins_near_zero_passes(faded):
-    # The node has died without a zero, and another one is enabled.
+    # The node has died without sending zeros, and another one is enabled.
     faded.guard.source_appeared(faded.now)
     faded.wait(1.0)
     faded.start()
@@ -325,7 +325,7 @@ def test_reset_without_a_fault_is_refused(active):
     assert not success and 'nothing to reset: ACTIVE' in message
 
 
-# The beginning -------------------------------------------------------------------------------
+# The begin of commands -----------------------------------------------------------------------
 
 
 def test_a_guard_started_after_the_commands_does_not_pass_them():
@@ -362,7 +362,7 @@ def test_an_obstacle_refuses_first_efforts_but_not_zeros():
     bench.start()
 
 
-# Its own end and its own standstill ----------------------------------------------------------
+# End and standstill of the guard ------------------------------------------------------------
 
 
 @pytest.mark.parametrize('within', [2.5, 0.2])
@@ -438,7 +438,7 @@ def test_a_failing_observer_has_no_effect():
     assert guard.state.name == 'ACTIVE'
 
 
-# Whatever comes ------------------------------------------------------------------------------
+# Random sequences ----------------------------------------------------------------------------
 
 EFFORT = st.one_of(st.floats(-50.0, 50.0), st.just(0.0))
 COMMAND = st.one_of(
@@ -463,7 +463,7 @@ RATES = st.one_of(st.just(()), st.just((60.0, 30.0)))
 
 
 class Judge(Bench):
-    """Holds every output against what the guard promises, from what can be seen of it."""
+    """Checks every output against the specification, from observable values only."""
 
     def __init__(self, settings):
         self.force, self.scale, self.input = [0.0, 0.0], [0.0, 0.0], None
@@ -474,7 +474,7 @@ class Judge(Bench):
         before = list(self.force)
         self.input = None
         super().tick()
-        # A look never starts and never enlarges an effort, and its steps are small.
+        # A tick never starts and never increases an effort, and its steps are small.
         ramp = self.guard.settings.stop_ramp
         for last, new, largest in zip(before, self.force, self.scale, strict=True):
             assert abs(new) <= abs(last) and new * last >= 0.0
@@ -491,12 +491,12 @@ class Judge(Bench):
             min(max(effort, -limit), limit) for effort, limit in zip(efforts, limits, strict=True)
         ]
         if list(output) != list(efforts):
-            # On the way from what is in force to the command, or from the way's beginning.
+            # Between the effort in force (or the first output of the approach) and the command.
             start = self.guard._start if self.guard.state.name == 'STARTING' else before
             for low, value, high in zip(start, output, wanted, strict=True):
                 assert min(low, high) - 1e-9 <= value <= max(low, high) + 1e-9
         if was == 'FAULT' and any(output):
-            # After a fade an effort begins near zero, or not at all.
+            # After a fade, commands only pass if they begin near zero.
             most = max(self.scale) or max(limits)
             assert max(map(abs, output)) <= NEAR * most + 1e-9
         self.scale = [

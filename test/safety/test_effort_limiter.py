@@ -1,4 +1,4 @@
-"""The limiter: whatever comes in, what goes out is finite, limited and one step away."""
+"""The limiter: every command is finite, limited and one step from the last one."""
 
 from dynamics_node.safety import EffortLimiter, InvalidEffortError
 from hypothesis import given
@@ -15,7 +15,7 @@ def limiter(scale=(1.0, 1.0)):
 
 
 def command(unit, effort, ramp, dt):
-    """Return the next command on the way to a part of an effort."""
+    """Return the next command toward a fraction of an effort."""
     return unit.step([ramp * value for value in unit.target(np.array(effort))], dt)
 
 
@@ -68,7 +68,7 @@ def test_a_step_is_limited_by_the_time_since_the_last_command():
 
 
 def test_infinity_is_clamped_and_nan_is_refused():
-    # +inf clamps to the limit, which is a safe number; NaN stays NaN and is refused.
+    # +inf is clamped to the limit, which is safe; NaN stays NaN and is refused.
     np.testing.assert_array_equal(command(limiter(), [np.inf, 0.0], 1.0, 1.0), [10.0, 0.0])
     with pytest.raises(InvalidEffortError, match='expected finite efforts'):
         command(limiter(), [np.nan, 0.0], 1.0, 1.0)

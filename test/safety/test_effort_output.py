@@ -1,4 +1,4 @@
-"""Ramps, steps and stops, with a clock that the test turns."""
+"""Ramps, steps and stops, with a simulated clock."""
 
 from dynamics_node.safety import EffortLimiter, EffortOutput, OutputSettings, OutputState
 from dynamics_node.safety.effort_output import (
@@ -18,7 +18,7 @@ PERIOD = 0.01
 
 
 class Bench:
-    """An output, and the loop around it: states every PERIOD, ticks, and what was sent."""
+    """An output and the loop around it: states every PERIOD, ticks, and the sent commands."""
 
     def __init__(self, stop_behavior='ramp_to_zero', limits=LIMITS, rates=RATES, **changes):
         settings = {'state_timeout': 0.1, 'start_ramp': 0.5, 'stop_ramp': 1.0, **changes}
@@ -44,7 +44,7 @@ class Bench:
         return self
 
     def follow(self, effort=TORQUE, seconds=0.0, period=PERIOD):
-        """Take states for some time, at least one."""
+        """Process states for some time, at least one."""
         end = self.now + seconds
         while True:
             self.now += period
@@ -53,7 +53,7 @@ class Bench:
                 return command
 
     def tick(self, seconds, period=STOP_PERIOD):
-        """Tick for some time; return what was sent."""
+        """Tick for some time; return the sent commands."""
         begin, end = len(self.sent), self.now + seconds
         while self.now < end - 1e-9:
             self.now += period
@@ -61,7 +61,7 @@ class Bench:
         return np.array(self.sent[begin:])
 
     def active(self):
-        """Return self, ACTIVE with the whole torque out."""
+        """Return self, ACTIVE with the full torque."""
         self.start().follow(seconds=1.0)
         assert self.name == 'ACTIVE'
         np.testing.assert_array_equal(self.sent[-1], TORQUE)
@@ -97,13 +97,13 @@ def test_the_first_command_repeats_the_efforts_in_force_and_steps_count_from_it(
 
 def test_a_stop_before_the_first_command_ends():
     bench = Bench().start()
-    bench.output.stop(bench.now, 'asked')
+    bench.output.stop(bench.now, 'disabled')
     bench.tick(1.5)
     assert bench.name == 'READY'
 
 
 def test_active_is_entered_after_the_full_effort_is_published():
-    # Rate limits so small that the effort is far from full when the ramp's time is over.
+    # Rate limits so small that the effort is far from full at the end of the ramp.
     bench = Bench(rates=np.array([2.0, 2.0])).start()
     bench.follow(seconds=1.0)
     assert bench.name == 'STARTING'
@@ -113,7 +113,7 @@ def test_active_is_entered_after_the_full_effort_is_published():
 
 
 def test_a_slow_stream_of_states_does_not_skip_the_ramp():
-    # States once a second; in between the ramp goes on by ticks.
+    # States once a second; in between the ramp continues by ticks.
     bench = Bench(state_timeout=2.0).start()
     bench.follow(period=1.0)
     bench.tick(0.99)
@@ -210,7 +210,7 @@ def test_hold_leaves_the_last_command_in_force_and_is_a_state_of_its_own():
     assert bench.output.has_effort_in_force
     assert bench.tick(0.5).size == 0
     assert len(bench.sent) == count
-    # Released: by the stop ramp, and the fault that was latched meanwhile stays.
+    # Released by the stop ramp; the fault latched meanwhile stays.
     bench.output.stop(bench.now, 'disabled on request')
     commands = bench.tick(1.1)
     assert (np.abs(np.diff(commands[:, 0])) <= 0.05 * TORQUE[0]).all()
@@ -345,7 +345,7 @@ def test_the_next_tick_is_that_of_a_ramp_or_none():
     bench = Bench()
     assert bench.output.next_tick_in(0.0) == np.inf
     bench.start()
-    assert bench.output.next_tick_in(bench.now) == np.inf  # no state yet, nothing to go on with
+    assert bench.output.next_tick_in(bench.now) == np.inf  # no state yet, so no effort
     bench.follow()
     assert bench.output.next_tick_in(bench.now) == pytest.approx(STOP_PERIOD)
     bench.follow(seconds=1.0)

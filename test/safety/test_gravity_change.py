@@ -1,4 +1,4 @@
-"""Gravity while an arm is driven: it turns slowly, whatever the number of calls."""
+"""Gravity while an arm is driven: it turns slowly, for any number of calls."""
 
 import math
 

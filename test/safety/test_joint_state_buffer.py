@@ -1,4 +1,4 @@
-"""The buffer: any order, parts, extras; and what it drops."""
+"""The buffer: any order, partial messages, other joints, and dropped messages."""
 
 import contextlib
 import math
@@ -119,7 +119,7 @@ def test_nan_of_an_unneeded_joint_is_ignored():
 
 
 def moving(needed=NAMES):
-    """Return a buffer of joints that make 1 rad/s, where a state may be 0.1 s old."""
+    """Return a buffer of joints with 1 rad/s and a state timeout of 0.1 s."""
     return JointStateBuffer(
         NAMES,
         needed,
@@ -130,7 +130,7 @@ def moving(needed=NAMES):
 
 
 def stamped(unit, time, names=NAMES, position=(0.0, 0.0, 0.0), late=0.0):
-    """Give a buffer a message that arrives `late` seconds after its stamp."""
+    """Send a buffer a message that arrives `late` seconds after its stamp."""
     unit.update(
         time,
         list(names),
@@ -147,7 +147,7 @@ def test_a_stamp_far_from_the_clock_makes_nothing_fresh(late, kind):
     stamped(unit, 0.0)
     if kind is None:
         stamped(unit, 1.0, late=late)
-        assert unit.age(1.0) == pytest.approx(0.09)  # it is as old as its stamp
+        assert unit.age(1.0) == pytest.approx(0.09)  # the age counts from the stamp
         return
     with pytest.raises(RejectedStateError, match='synchronize the clocks'):
         stamped(unit, 1.0, late=late)
@@ -364,7 +364,7 @@ def test_measured_is_the_stamp_of_the_oldest_needed_joint():
     assert unit.measured == round(100.01 * SECOND)
     stamped(unit, 0.03, 'ac', (0.0, 0.0))
     assert unit.measured == round(100.02 * SECOND)
-    # Without a stamp nobody says when.
+    # Without a stamp the time of the measurement is unknown.
     unit.update(0.04, ['a'], [0.0])
     assert unit.measured == 0
 

@@ -1,4 +1,4 @@
-"""The states of the output: what latches, what is told, and what the observer may not do."""
+"""The states of the output: latched faults, reported changes, failing observers."""
 
 from dynamics_interfaces.msg import OutputState as Message
 from dynamics_node.safety import OutputState, OutputStateMachine
@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 
 def machine():
-    """Return a machine and the list of what its observer hears."""
+    """Return a machine and the list of changes that its observer receives."""
     heard = []
     return OutputStateMachine(lambda state, reason: heard.append((state.name, reason))), heard
 
@@ -28,7 +28,7 @@ def test_the_first_fault_is_latched():
     unit.latch('first')
     unit.latch('second')
     unit.enter(OutputState.FAULT, unit.fault)
-    for i in range(1000):  # a storm of faults is one event
+    for i in range(1000):  # repeated faults are one event
         unit.enter(OutputState.FAULT, f'another {i}')
     assert heard == [('FAULT', 'first')]
     assert unit.fault == 'first'

@@ -1,4 +1,4 @@
-"""From a message to a command, with every fault that can be dealt between them."""
+"""From a joint state to a command, with random faults in between."""
 
 import math
 
@@ -38,7 +38,7 @@ class Model:
 
 
 class Arm:
-    """A torque path with an arm of two joints, and a caller that publishes what it returns."""
+    """A torque path with an arm of two joints, and a caller that publishes its commands."""
 
     def __init__(self, behavior='ramp_to_zero', timeout=0.1, velocity=3.0, rates=RATES):
         self.path = TorquePath(
@@ -75,7 +75,7 @@ class Arm:
         return command
 
     def take(self, now, position, velocity=(), stamp=None, names=NAMES, clock=None, efforts=()):
-        """Take a message, stamped when it arrives unless told otherwise; return the command."""
+        """Process a message, stamped at its arrival by default; return the command."""
         clock = round((100 + now) * SECOND) if clock is None else clock
         stamp = clock if stamp is None else stamp
         return self.publish(
@@ -90,7 +90,7 @@ class Arm:
         return self.publish(now, self.path.tick(now))
 
     def run(self, now, seconds, position, period=0.01, **message):
-        """Take states and tick for some time; return the time."""
+        """Process states and tick for some time; return the time."""
         for _ in range(round(seconds / period)):
             now += period
             self.take(now, position, **message)
@@ -107,7 +107,7 @@ class Arm:
 
 
 def active(**options):
-    """Return an arm that is ACTIVE at t = 1, and the state it stands at."""
+    """Return an arm that is ACTIVE at t = 1, and its joint state."""
     arm, state = Arm(**options), [1.4, 0.2]
     arm.take(0.0, state)
     assert arm.path.enable(0.0)
@@ -239,7 +239,7 @@ def test_a_delayed_command_is_not_sent():
     assert command is not None
     assert arm.path.is_timely(1.02)
     assert not arm.path.is_timely(2.0)
-    np.testing.assert_array_equal(arm.path.output.limiter.last, sent)  # what the arm really has
+    np.testing.assert_array_equal(arm.path.output.limiter.last, sent)  # the command in force
     assert arm.name == 'STOPPING'
 
 
@@ -320,7 +320,7 @@ def test_a_deactivated_controller_ends_the_output_and_the_next_start_begins_ther
     assert arm.run(1.01, 0.5, state, efforts=last) and arm.sent[-1] is last
     assert arm.path.enable(1.6)
     np.testing.assert_allclose(arm.take(1.61, state, efforts=last), last)
-    # One that sets the hardware to zero: then the ramp begins at zero.
+    # A controller that sets the hardware to zero: the ramp begins at zero.
     arm, state = active()
     arm.path.lose_controller(1.01, '/effort_controller is inactive')
     arm.run(1.01, 0.5, state, efforts=[0.0, 0.0])
@@ -349,7 +349,7 @@ def test_restart_from_zero_ramps_for_a_new_controller():
 def test_a_clock_that_goes_back_drops_the_state_and_ramps_again():
     arm, (elbow, wrist) = active()
     last = arm.path.output.limiter.last
-    # A simulation begins anew: the arm stands elsewhere, and no jump is seen in that.
+    # A simulation restarts with the arm elsewhere: this is no jump.
     command = arm.take(1.01, [-elbow, -wrist], clock=3 * SECOND)
     assert arm.name == 'STARTING'
     assert 'the clock went back by 98.000 s' in arm.path.output.machine.reason
@@ -413,7 +413,7 @@ MESSAGES = st.tuples(
     st.lists(st.sampled_from([*NAMES, 'other']), max_size=4),
     st.lists(number, max_size=4),
     st.lists(number, max_size=4),
-    # The stamp: none, in time, late, ahead, from anywhere.
+    # The stamp: none, in time, late, ahead, random.
     st.one_of(st.none(), st.floats(-0.3, 0.3), st.integers(-(2**31), 2**31)),
 )
 CALLS = ('enable', 'disable', 'fault', 'error', 'signal', 'lost', 'late controller', 'tick')
@@ -428,14 +428,14 @@ EVENTS = st.one_of(
 
 
 def stamp_of(choice, clock):
-    """Return the stamp that a message with this choice has, ns."""
+    """Return the stamp for a choice, ns."""
     if choice is None:
         return 0
     return clock - round(choice * SECOND) if isinstance(choice, float) else choice * SECOND
 
 
 def call(path, event, now):
-    """Stop, or start anew, by one of the calls that do."""
+    """Stop or restart by one of the calls for it."""
     if event == 'signal':
         path.close(now, event, 2.5)
     else:
@@ -491,14 +491,14 @@ def test_any_sequence_of_events_gives_valid_commands_and_none_while_off(behavior
         else:
             call(path, event, now)
         if event in ('late controller', 'enable') and path.is_driving:
-            last = path.output.limiter.last  # what is in force is known anew
+            last = path.output.limiter.last  # the efforts in force may have changed
         if command is None:
             continue
         assert was_on
         assert command.shape == (2,)
         assert np.isfinite(command).all()
         assert (np.abs(command) <= np.maximum(LIMITS, np.abs(last))).all()
-        # One step counts at most ten milliseconds; of a stop, at most a twentieth of a second.
+        # The time of one step is at most 10 ms, that of a stop at most 50 ms.
         dt = min(now - last_time, STOP_PERIOD)
         allowed = RATES * dt
         if was_stopping or arm.name == 'STOPPING':

@@ -1,4 +1,4 @@
-"""Descriptions whose size alone would keep the node busy: answered within a second."""
+"""Oversized descriptions and those at the limits: refused or read within a second."""
 
 import time
 
@@ -9,7 +9,7 @@ import yourdfpy  # noqa: F401  (its import is not part of the measured times)
 
 
 def many(text, count):
-    """Return a robot that consists of a link and of one text many times."""
+    """Return a robot of one link and a repeated text."""
     return '<robot name="r"><link name="a"/>' + text * count + '</robot>'
 
 

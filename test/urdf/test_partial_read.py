@@ -1,4 +1,4 @@
-"""What can be read of a description that is refused."""
+"""Best-effort reading of defective URDFs."""
 
 from dynamics_node import RobotDescriptionError
 from dynamics_node.urdf import examine_urdf, read_urdf
@@ -8,9 +8,9 @@ from support.robots import ARM7
 
 
 def test_a_correct_robot_is_read_whole():
-    found = examine_urdf(ARM7)
-    assert found.is_whole and not found.problems and not found.unread
-    described, expected = found.description, read_urdf(ARM7)
+    result = examine_urdf(ARM7)
+    assert result.is_whole and not result.problems and not result.unread
+    described, expected = result.description, read_urdf(ARM7)
     assert [link.name for link in described.links] == [link.name for link in expected.links]
     assert (described.root, described.warnings) == (expected.root, expected.warnings)
 
@@ -26,17 +26,17 @@ def test_a_correct_robot_is_read_whole():
     ],
 )
 def test_readable_parts_are_kept(text, links, joints, unread):
-    found = examine_urdf(text)
+    result = examine_urdf(text)
     with pytest.raises(RobotDescriptionError) as caught:
         read_urdf(text)
-    assert found.problems == caught.value.problems and not found.is_whole
-    assert len(found.description.links) == links and len(found.description.joints) == joints
-    assert found.unread == unread and found.description.root == ''
+    assert result.problems == caught.value.problems and not result.is_whole
+    assert len(result.description.links) == links and len(result.description.joints) == joints
+    assert result.unread == unread and result.description.root == ''
 
 
 def test_a_robot_with_wrong_numbers_is_still_whole():
-    found = examine_urdf(changed(arm(), 'link3', mass=-2.0))
-    assert found.is_whole and len(found.problems) == 1 and found.description.root == 'base'
+    result = examine_urdf(changed(arm(), 'link3', mass=-2.0))
+    assert result.is_whole and len(result.problems) == 1 and result.description.root == 'base'
 
 
 def test_stated_values_are_kept_beside_the_used_ones():

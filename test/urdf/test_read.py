@@ -1,4 +1,4 @@
-"""Reading a URDF: what is taken, what is refused, and that every problem is named."""
+"""Reading a URDF: accepted and refused descriptions, and the names in every problem."""
 
 from pathlib import Path
 import subprocess
@@ -72,7 +72,8 @@ def test_meshes_are_never_opened(tmp_path):
 
 
 def test_no_address_opens_a_file_or_socket():
-    # In a process of its own: an audit hook stays for ever. Once before, for what is loaded once.
+    # In a separate process, because an audit hook cannot be removed. The first read loads
+    # modules; the second one is audited.
     mesh = '<mesh filename="{}"/>'
     parts = ''.join(
         f'<visual><geometry>{mesh.format(address)}</geometry></visual><collision><geometry>'
@@ -151,7 +152,7 @@ def test_other_elements_are_ignored():
 
 
 def test_other_name_spaces_are_removed_before_yourdfpy(caplog):
-    # xml:id must be a name, and lxml reads the text once more, its way, where it is none.
+    # With an xml:id that is no name, lxml (of yourdfpy) would log an error and parse again.
     text = two_links(
         '<axis xyz="0 0 1" xml:id="1 2"/><x:axis xmlns:x="a b" xyz="1 0 0"/>',
         inertial=INERTIAL.replace('<mass', '<mass xml:id="3 4"') + '<visual xml:id="5 6"/>',
@@ -227,7 +228,7 @@ def test_usual_notations_of_numbers_are_accepted(value):
 
 
 def test_all_problems_are_listed_at_once():
-    found = problems(
+    listed = problems(
         '<robot name="r"><link name="a"/><link name="a"/><link/>'
         '<link name="b"><inertial><mass value="x"/></inertial></link>'
         '<joint name="j" type="floating"><parent link="a"/><child link="nowhere"/></joint>'
@@ -243,7 +244,7 @@ def test_all_problems_are_listed_at_once():
         "link 'b': <mass> value: expected a finite number, got 'x'",
         "link 'b': <inertial> has no <inertia>",
     ):
-        assert any(text in problem for problem in found), text
+        assert any(text in problem for problem in listed), text
 
 
 @pytest.mark.parametrize('kind', ['floating', 'planar'])
@@ -325,7 +326,7 @@ def test_axis_is_normalized_or_defaulted_with_a_warning_and_never_zero():
 
 
 def with_diagonal(ixx, iyy, izz, mass=1.0):
-    """Return a robot whose moving link has given principal moments."""
+    """Return a robot with the given principal moments of its moving link."""
     return two_links(
         inertial=(
             f'<inertial><mass value="{mass}"/><inertia ixx="{ixx}" ixy="0" ixz="0" iyy="{iyy}" '
@@ -347,9 +348,9 @@ def test_impossible_inertia_is_refused_and_suspicious_inertia_is_warned_about():
 
 
 def test_rounding_of_a_point_mass_is_not_an_impossible_inertia():
-    # As published for iCub: -5.4e-20 on a link of half a kilogram.
+    # As in the URDF of iCub: -5.4e-20 kg m² on a link of half a kilogram.
     assert read_urdf(with_diagonal(-5.42101e-20, 0, 0, mass=0.526)).warnings == ()
-    # And beyond rounding it is.
+    # Beyond rounding.
     [problem] = problems(with_diagonal(-1e-13, 1, 1))
     assert 'smallest principal moment of inertia is -1e-13' in problem
 

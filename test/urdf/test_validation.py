@@ -1,4 +1,4 @@
-"""What is a number in a URDF, and what is not."""
+"""Numbers and names of a URDF, and their limits."""
 
 import time
 
@@ -30,7 +30,7 @@ DIGITS = '1' * 1_000_000
 @pytest.mark.parametrize(
     'text',
     [
-        # A million characters in one attribute: each looked at a few times, not a million times.
+        # A million characters in one attribute.
         DIGITS + 'x',
         '.' + DIGITS + 'x',
         '1.' * 500_000,
@@ -50,9 +50,9 @@ def test_a_long_text_is_matched_in_linear_time(text):
 def test_only_white_space_of_xml_may_surround_a_number(blank):
     for number in (f'{blank}1', f'1{blank}'):
         assert not is_number(number)
-        for given in ({'mass': number}, {'inertia': number}, {'place': f'0 0 {number}'}):
+        for values in ({'mass': number}, {'inertia': number}, {'place': f'0 0 {number}'}):
             with pytest.raises(RobotDescriptionError, match=r'expected .*finite number'):
-                read(**given)
+                read(**values)
     assert read(mass=' \t\n1\r', place=' 0\t0\n0 ').links[1].inertial.mass == 1.0
 
 
@@ -74,7 +74,7 @@ def test_numbers_above_1e30_are_refused():
 
 
 def test_a_position_limit_above_1e30_is_no_limit():
-    # The largest number there is, as simulators write what is unlimited.
+    # The largest float, as simulators write a missing limit.
     joint = read(lower='-1.79769e+308', upper='1.79769e+308').joints[0]
     assert (joint.lower, joint.upper) == (-np.inf, np.inf)
     joint = read(lower='1e300', upper='1.79769e+308').joints[0]
@@ -126,19 +126,19 @@ def test_repeated_elements_are_refused(link, joint, problem):
 
 
 @pytest.mark.parametrize(
-    'written, shown',
+    'written, quoted',
     [
         ('a&#10;[FATAL] all is lost', r"'a\n[FATAL] all is lost'"),
         ('\u202eedoc', r"'\u202eedoc'"),
         ('\ufeffa', r"'\ufeffa'"),
     ],
 )
-def test_an_unprintable_name_is_refused(written, shown):
+def test_an_unprintable_name_is_refused(written, quoted):
     for kind, more in (('link', ''), ('joint', 'type="revolute"')):
         with pytest.raises(RobotDescriptionError) as caught:
             read_urdf(f'<robot name="r"><{kind} name="{written}" {more}/></robot>')
         assert caught.value.problems[0] == (
-            f'{kind} {shown}: its name has characters that cannot be printed'
+            f'{kind} {quoted}: its name has characters that cannot be printed'
         )
         assert all(problem.isprintable() for problem in caught.value.problems)
 
@@ -159,7 +159,7 @@ def test_a_long_name_is_refused_and_shortened():
 
 
 def test_the_longest_chains_are_read_in_time():
-    # 0.7 s on a slow machine, most of it in proportion to the length.
+    # 0.7 s on a slow machine, mostly proportional to the length.
     for kind in ('fixed', 'prismatic'):
         start = time.process_time()
         assert len(read_urdf(chain(1000, kind)).joints) == 999
