@@ -401,7 +401,7 @@ class TorquePath:
         Returns
         -------
         bool
-            False if the output is off and no effort is in force.
+            False if the output is off without an effort in force, or already stopping.
 
         """
         if not self.is_driving and not self.output.has_effort_in_force:
@@ -411,7 +411,7 @@ class TorquePath:
 
     def fault(self, now: float, reason: str) -> None:
         """
-        Stop because the arm must not be driven any further; no effect while no effort is sent.
+        Stop because the arm must not be driven any further; no effect while READY or FAULT.
 
         The last command is never held: it may drive a runaway.
 
