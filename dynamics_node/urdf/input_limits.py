@@ -9,6 +9,9 @@ from xml.parsers import expat
 
 from ..errors import quoted, RobotDescriptionError
 
+# A path, or the URDF text itself.
+Source = str | bytes | os.PathLike[str]
+
 # Largest text, bytes.
 MAX_BYTES = 5_000_000
 # Largest number of links, and of joints.
@@ -21,7 +24,7 @@ MAX_ATTRIBUTES = 100_000
 MAX_DEPTH = 32
 
 
-def load_text(source: str | bytes | os.PathLike[str]) -> bytes:
+def load_text(source: Source) -> bytes:
     """
     Return the URDF text of a path or of a text.
 

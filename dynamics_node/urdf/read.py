@@ -8,7 +8,6 @@ dynamics needs, by yourdfpy, which returns its numbers and poses.
 
 import io
 import math
-import os
 from typing import Any
 from xml.etree import ElementTree
 
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 
 from .description import Inertial, Joint, Link, Mimic, RobotDescription, Stated
 from .inertial import inertial_findings
-from .input_limits import check_text, load_text, parse
+from .input_limits import check_text, load_text, parse, Source
 from .partial_read import PartialRead, readable_parts
 from .validation import (
     is_number,
@@ -38,31 +37,14 @@ _PARTS: dict[str, set[str]] = {
     'joint': {'parent', 'child', 'origin', 'axis', 'limit', 'dynamics', 'mimic'},
 }
 _ATTRIBUTES = {
-    'name',
-    'type',
-    'link',
-    'joint',
-    'xyz',
-    'rpy',
-    'value',
-    'ixx',
-    'ixy',
-    'ixz',
-    'iyy',
-    'iyz',
-    'izz',
-    'lower',
-    'upper',
-    'effort',
-    'velocity',
-    'damping',
-    'friction',
-    'multiplier',
-    'offset',
+    *('name', 'type', 'link', 'joint', 'xyz', 'rpy', 'value'),
+    *('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz'),
+    *('lower', 'upper', 'effort', 'velocity'),
+    *('damping', 'friction', 'multiplier', 'offset'),
 }
 
 
-def read_urdf(source: str | bytes | os.PathLike[str]) -> RobotDescription:
+def read_urdf(source: Source) -> RobotDescription:
     """
     Read a URDF and check everything that dynamics depends on.
 
@@ -88,7 +70,7 @@ def read_urdf(source: str | bytes | os.PathLike[str]) -> RobotDescription:
     return result.description
 
 
-def examine_urdf(source: str | bytes | os.PathLike[str]) -> PartialRead:
+def examine_urdf(source: Source) -> PartialRead:
     """
     Read a URDF as far as possible, for a report about it.
 
@@ -142,7 +124,7 @@ def examine_urdf(source: str | bytes | os.PathLike[str]) -> PartialRead:
     )
 
 
-def _element(source: str | bytes | os.PathLike[str]) -> tuple[ElementTree.Element, str]:
+def _element(source: Source) -> tuple[ElementTree.Element, str]:
     # The <robot> element and the robot's name.
     text = load_text(source)
     check_text(text)
