@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.tree import PRISMATIC
-
 # Of the reach: the sphere of the heaviest body, the largest arc around a joint, the arrow of
 # 9.81 m/s², the height of a text, and the thinnest that a solid is drawn.
 HEAVIEST, ARC, GRAVITY, TEXT, THINNEST = 0.032, 0.09, 0.2, 0.02, 5e-4
@@ -108,7 +106,7 @@ def reach(tree):
 def _travel(tree, k):
     # Of a prismatic joint with limits; rails are long, and their joints are at one end.
     low, high = tree.limits[tree.q_index[k], :2]
-    travel = high - low if tree.joint_type[k] == PRISMATIC else 0.0
+    travel = high - low if tree.is_prismatic[k] else 0.0
     return travel * abs(tree.multiplier[k]) if travel < _FAR else 0.0
 
 

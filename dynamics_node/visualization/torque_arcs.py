@@ -6,7 +6,6 @@ import numpy as np
 
 from . import colors
 from .shapes import DISC, frame_around, LINE, quaternions, Shape, TEXT
-from ..model.tree import PRISMATIC
 
 GRAVITY_TORQUE, EFFORT, JOINTS, TEXTS = 'gravity_torque', 'effort', 'joints', 'torque_text'
 # An arc of three quarters of a turn is the limit; it never closes.
@@ -43,7 +42,7 @@ class Torques:
         rows = [tree.moving_joint_names.index(name) for name in names]
         self._rows = np.array(rows, dtype=np.int64)
         self._parents = tree.parent[self._rows]
-        self._is_prismatic = [bool(tree.joint_type[row] == PRISMATIC) for row in rows]
+        self._is_prismatic = tree.is_prismatic[self._rows].tolist()
         self._radius = [float(sizes.arcs[row]) for row in rows]
         self._frames = np.array(
             [tree.joint_placement[row, :3, :3] @ frame_around(tree.axis[row]) for row in rows]

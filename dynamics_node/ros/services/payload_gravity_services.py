@@ -99,7 +99,7 @@ class PayloadGravityServices(RobotServices):
         timeout = self.parameters['state_timeout']
         # Every joint that turns it, also those that are not in `joints`, and no other.
         if stale := robot.buffer.stale_joints(
-            time.monotonic(), timeout, _joints_to(robot.model.tree, frame)
+            time.monotonic(), timeout, robot.model.tree.supporting_joints(frame)
         ):
             raise ArgumentError(
                 f'header.frame_id: how {frame} is turned is not known: no joint '
@@ -128,15 +128,6 @@ class PayloadGravityServices(RobotServices):
             stamped.header.frame_id = robot.model.tree.root
             stamped.vector.x, stamped.vector.y, stamped.vector.z = robot.model.gravity.tolist()
         return response
-
-
-def _joints_to(tree, link):
-    # Places of the joints between the base and a link, each once.
-    body, joints = tree.links[link].body, set()
-    while body >= 0:
-        joints.add(int(tree.q_index[body]))
-        body = tree.parent[body]
-    return sorted(joints)
 
 
 def _with_fields(text):
