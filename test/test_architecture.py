@@ -24,7 +24,7 @@ STREET = {
 # llvmlite is numba's compiler and comes with it.
 LIBRARY = {'numpy', 'numba', 'llvmlite', 'yourdfpy', 'scipy'}
 # Only for these files of the report, which says how to install them where they are missing.
-SHOWING = {'report/terminal': 'rich', 'report/progress': 'rich', 'report/html': 'plotly'}
+SHOWING = {'report/terminal': 'rich', 'report/__main__': 'rich', 'report/html': 'plotly'}
 SOURCES = sorted(PACKAGE.rglob('*.py'))
 
 

@@ -3,7 +3,7 @@
 import math
 
 from dynamics_node.report import make_report
-from dynamics_node.report.study import Study
+from dynamics_node.report.workspace_analysis import WorkspaceAnalysis
 from dynamics_node.urdf import read_urdf
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ KINOVA = 'kinova_description/robots/kinova.urdf'
 
 
 def study(text, samples=500, seed=1, gravity=DOWN):
-    return Study.begin(read_urdf(text), gravity, samples, seed)
+    return WorkspaceAnalysis.from_description(read_urdf(text), gravity, samples, seed)
 
 
 def test_a_pendulum_is_worst_where_it_is_horizontal():

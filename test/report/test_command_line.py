@@ -1,6 +1,6 @@
 """The command line of the report."""
 
-from dynamics_node.report.command_line import parse
+from dynamics_node.report.__main__ import parse
 import pytest
 
 

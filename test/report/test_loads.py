@@ -3,8 +3,8 @@
 import math
 
 from dynamics_node.report import make_report
-from dynamics_node.report.loads import per_kilogram
-from dynamics_node.report.study import Study
+from dynamics_node.report.gravity_load import per_kilogram
+from dynamics_node.report.workspace_analysis import WorkspaceAnalysis
 from dynamics_node.urdf import read_urdf
 import numpy as np
 import pytest
@@ -40,7 +40,9 @@ def test_the_curve_goes_through_the_worst_place():
 
 
 def test_a_kilogram_is_what_a_payload_of_a_kilogram_adds():
-    study = Study.begin(read_urdf(public_robot(PANDA)), (0.0, 0.0, -9.81), 200, 1)
+    study = WorkspaceAnalysis.from_description(
+        read_urdf(public_robot(PANDA)), (0.0, 0.0, -9.81), 200, 1
+    )
     model, point = study.model, (0.02, -0.03, 0.1)
     loaded = model.with_payload('panda_hand', 1.0, point).gravity_torque(study.positions)
     np.testing.assert_allclose(

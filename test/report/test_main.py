@@ -210,7 +210,7 @@ def test_what_is_not_installed_is_named_with_what_to_type(tmp_path):
     assert answer.returncode == 2 and 'pip install rich; or use --json' in answer.stderr
     assert run(ARM7, '--samples', 10, '--json', code=refusing('rich', 'plotly')).returncode == 0
     answer = run(ARM7, '--samples', 10, '--html', tmp_path / 'p.html', code=refusing('plotly'))
-    assert answer.returncode == 2 and 'pip install plotly' in answer.stderr
+    assert answer.returncode == 2 and 'pip install jinja2 plotly' in answer.stderr
 
 
 def test_it_can_be_piped_into_head_and_into_a_file_of_another_encoding():
@@ -263,4 +263,4 @@ def test_it_reads_a_pipe_that_has_a_path(robot):
 
 def test_no_name_is_no_robot(capsys):
     assert main(['']) == 2
-    assert "got '', which is no name" in capsys.readouterr().err
+    assert "got '', which is empty" in capsys.readouterr().err

@@ -2,8 +2,11 @@
 
 import math
 
-from dynamics_node.report.sampling import sample_positions, sampling_ranges
-from dynamics_node.report.study import Study
+from dynamics_node.report.workspace_analysis import (
+    sample_positions,
+    sampling_ranges,
+    WorkspaceAnalysis,
+)
 from dynamics_node.urdf import read_urdf
 import numpy as np
 from support.arms import arm, changed
@@ -11,7 +14,9 @@ from support.arms import arm, changed
 
 def ranges(text):
     """Return ranges and notes of a robot."""
-    return sampling_ranges(Study.begin(read_urdf(text), (0, 0, -9.81), 1, 1).model)
+    return sampling_ranges(
+        WorkspaceAnalysis.from_description(read_urdf(text), (0, 0, -9.81), 1, 1).model
+    )
 
 
 def test_limits_are_the_range():

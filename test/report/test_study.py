@@ -1,7 +1,7 @@
 """One robot under the lens."""
 
 from dynamics_node import RobotModel
-from dynamics_node.report.study import Study
+from dynamics_node.report.workspace_analysis import WorkspaceAnalysis
 from dynamics_node.urdf import read_urdf
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from support.robots import random_urdf
 
 @pytest.fixture(scope='module')
 def study():
-    return Study.begin(read_urdf(arm()), (0.0, 0.0, -9.81), 300, 1)
+    return WorkspaceAnalysis.from_description(read_urdf(arm()), (0.0, 0.0, -9.81), 300, 1)
 
 
 def test_torques_are_those_of_the_library(study):
@@ -51,8 +51,8 @@ def test_another_inertial_is_that_of_another_urdf(study):
 
 
 def test_the_joints_that_carry_a_link(study):
-    assert study.joints_under('gripper') == [4, 3, 2, 1, 0]
-    assert study.joints_under('base') == []
+    assert study.supporting_joints('gripper') == [4, 3, 2, 1, 0]
+    assert study.supporting_joints('base') == []
 
 
 def test_batches_cover_the_samples_once(study):
@@ -69,7 +69,9 @@ def test_no_compiler_is_started(monkeypatch):
         raise AssertionError('a compiler was started')
 
     monkeypatch.setattr(specialised, 'start', refuse)
-    study = Study.begin(read_urdf(random_urdf(77, joints=5)), (0.0, 0.0, -9.81), 50_000, 1)
+    study = WorkspaceAnalysis.from_description(
+        read_urdf(random_urdf(77, joints=5)), (0.0, 0.0, -9.81), 50_000, 1
+    )
     for _ in range(5):
         study.model.gravity_torque(study.positions)
         study.model.with_payload(study.model.tip_link, 1.0).mass_matrix(study.positions)

@@ -10,9 +10,9 @@ from .figures import page_data
 from .findings import findings_section
 from .joints import joints_table
 from .links import bodies_table, links_table
-from .numbers import count, number, vector
 from .payload import conditioning_section, payload_section
 from .summary import summary
+from ..formatting import count, number, vector
 
 _SCRIPTS = ('kinematics.js', 'tables.js', 'plots.js', 'arm.js', 'start.js')
 # Without figures nothing is drawn, and plotly would be 5 MB for nothing.

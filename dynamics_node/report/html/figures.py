@@ -1,13 +1,13 @@
 """All that the page draws, as one piece of plain data."""
 
 from .escape import plot_text
-from .numbers import number, vector
 from .plot_curve import curve_figure, histogram_figure
 from .plot_distribution import distribution_figure
 from .plot_mass import mass_figure
 from .plot_worst import worst_figure
 from .poses import poses
 from .scene import scene
+from ..formatting import number, vector
 
 
 def page_data(report):

@@ -1,7 +1,7 @@
 """The findings, the worst first: colour, word and order say how bad each is."""
 
 from .escape import span, text
-from .numbers import count
+from ..formatting import count
 
 _FEW = 4  # names in a headline
 WORDS = {'problem': 'Problem', 'warning': 'Warning', 'note': 'Note'}

@@ -3,9 +3,9 @@
 import math
 
 from .escape import span, text
-from .numbers import number, percent, position
 from .plot_worst import tone
 from .table import amount, Cell, Column, name, table, words
+from ..formatting import number, percent, position
 
 _TONES = {'problem': 'bad', 'warning': 'doubt', 'accent': '', 'faint': 'missing'}
 

@@ -1,8 +1,8 @@
 """The tables of links, as they stand in the URDF, and of bodies, as joints move them."""
 
 from .escape import span, text
-from .numbers import MISSING, vector
 from .table import amount, Cell, Column, name, table, words
+from ..formatting import MISSING, vector
 
 
 def links_table(links):

@@ -3,7 +3,7 @@
 import math
 
 from .escape import span, text
-from .numbers import count, number, position, quantity, vector
+from ..formatting import count, number, position, quantity, vector
 
 
 def payload_section(report):

@@ -4,8 +4,8 @@ from itertools import pairwise
 import math
 
 from .escape import plot_text
-from .numbers import number, position, quantity
 from .plot_parts import axis, color, layout
+from ..formatting import number, position, quantity
 
 HEIGHT = 300  # [px]
 

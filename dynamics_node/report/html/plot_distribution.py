@@ -4,8 +4,8 @@ import math
 from typing import Any
 
 from .escape import plot_text
-from .numbers import percent, quantity
 from .plot_parts import axis, color, layout, MARGINS, ROW, rows
+from ..formatting import percent, quantity
 
 
 def quantile(load, level):

@@ -1,8 +1,8 @@
 """The plot of what the bodies weigh, in the order of the chain."""
 
 from .escape import plot_text
-from .numbers import count, number, vector
 from .plot_parts import axis, color, layout, MARGINS, ROW, rows
+from ..formatting import count, number, vector
 
 
 def mass_figure(bodies):

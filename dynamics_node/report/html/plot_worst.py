@@ -4,8 +4,8 @@ import math
 from typing import Any
 
 from .escape import plot_text
-from .numbers import number, percent, quantity
 from .plot_parts import axis, color, layout, MARGINS, ROW, rows
+from ..formatting import number, percent, quantity
 
 TIGHT = 0.8  # of the limit: what is left above is needed to move
 

@@ -1,6 +1,6 @@
 """The poses that the 3D view can show at the press of a button."""
 
-from .numbers import number, percent, quantity
+from ..formatting import number, percent, quantity
 
 
 def poses(report):

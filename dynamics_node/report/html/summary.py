@@ -4,8 +4,8 @@ import math
 
 from .escape import text
 from .findings import headline
-from .numbers import count, number, percent, quantity
 from .plot_worst import tone
+from ..formatting import count, number, percent, quantity
 
 
 def summary(report):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 import math
 
 from .escape import span, text
-from .numbers import number
+from ..formatting import number
 
 
 @dataclass(frozen=True)

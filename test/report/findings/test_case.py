@@ -1,20 +1,20 @@
 """Who carries what, and how large it is."""
 
 from dynamics_node.report import make_report
-from dynamics_node.report.findings.case import Case
+from dynamics_node.report.findings.context import FindingContext
 from dynamics_node.urdf import examine_urdf
 import pytest
 from support.arms import arm
 
 
 def test_masses_and_lengths_of_an_arm():
-    case = Case(make_report(arm(), samples=10), examine_urdf(arm()), None)
+    case = FindingContext(make_report(arm(), samples=10), examine_urdf(arm()), None)
     assert case.moving_mass == pytest.approx(3.0 + 2.5 + 2.0 + 1.2 + 0.8 + 0.7)
     assert case.body_mass['joint5'] == pytest.approx(1.5)
     assert case.mass_behind['joint3'] == pytest.approx(1.2 + 0.8 + 0.7)
     assert case.body_parent['joint1'] is None and case.body_children['joint2'] == ['joint3']
     assert case.reach == pytest.approx(0.1 + 0.3 + 0.3 + 0.25 + 0.2 + 0.15)
-    assert case.size('link3') == pytest.approx(0.3) and case.any_shapes
+    assert case.size('link3') == pytest.approx(0.3) and case.has_shapes
     assert [entry.name for entry in case.moved][:2] == ['link1', 'link2']
 
 
@@ -33,5 +33,5 @@ def test_a_cycle_ends():
     )
     report = make_report(text, samples=10)
     assert report.verdict == 'refused'
-    case = Case(report, examine_urdf(text), None)
+    case = FindingContext(report, examine_urdf(text), None)
     assert case.reach == 0.0 and set(case.mass_behind) == {'j'}

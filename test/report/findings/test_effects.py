@@ -1,6 +1,7 @@
 """What another inertia would do, against models of the other URDF."""
 
-from dynamics_node.report.findings.case import Case
+from dynamics_node.report.build import make_report
+from dynamics_node.report.findings.context import FindingContext
 from dynamics_node.report.findings.effects import (
     added_torque,
     changed,
@@ -8,8 +9,7 @@ from dynamics_node.report.findings.effects import (
     payload_effect,
     torque_effect,
 )
-from dynamics_node.report.make import make_report
-from dynamics_node.report.study import Study
+from dynamics_node.report.workspace_analysis import WorkspaceAnalysis
 from dynamics_node.urdf import examine_urdf
 import numpy as np
 import pytest
@@ -19,8 +19,8 @@ from support import arms
 @pytest.fixture(scope='module')
 def case():
     found = examine_urdf(arms.arm())
-    study = Study.begin(found.description, (0.0, 0.0, -9.81), 500, 1)
-    return Case(make_report(arms.arm(), samples=500), found, study)
+    study = WorkspaceAnalysis.from_description(found.description, (0.0, 0.0, -9.81), 500, 1)
+    return FindingContext(make_report(arms.arm(), samples=500), found, study)
 
 
 def worst(text, joint):
@@ -60,10 +60,12 @@ def test_inertia_of_another_tensor(case):
     effect = inertia_effect(
         case, 'link5', changed(inertial, tensor=0.5 * inertial.tensor), 'with half of it'
     )
-    model = case.study.model
+    model = case.analysis.model
     half = arms.scaled_tensor(arms.arm(), 'link5', 0.5)
-    other = Study.begin(examine_urdf(half).description, (0.0, 0.0, -9.81), 1, 1).model
-    q = case.study.positions[:256]
+    other = WorkspaceAnalysis.from_description(
+        examine_urdf(half).description, (0.0, 0.0, -9.81), 1, 1
+    ).model
+    q = case.analysis.positions[:256]
     share = (
         np.diagonal(model.mass_matrix(q), axis1=1, axis2=2)
         / np.diagonal(other.mass_matrix(q), axis1=1, axis2=2)
@@ -74,6 +76,6 @@ def test_inertia_of_another_tensor(case):
 
 
 def test_without_a_tree_nothing_is_said(case):
-    nobody = Case(case.report, case.examination, None)
+    nobody = FindingContext(case.report, case.examination, None)
     assert torque_effect(nobody, {'link3': None}, '').text == ''
     assert payload_effect(nobody, 'link3', 1.0, '').text == ''

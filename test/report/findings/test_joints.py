@@ -57,6 +57,6 @@ def test_every_warning_of_the_model_is_in_the_report():
 def test_a_warning_that_nobody_knows_is_told_as_it_is(monkeypatch):
     from dynamics_node.report.findings import joints
 
-    monkeypatch.setattr(joints, '_ELSEWHERE', ())
+    monkeypatch.setattr(joints, '_EXPLAINED', ())
     [found] = findings(changed(arm(), 'joint1', axis=False), 'reader_warning')
     assert found.what == "joint 'joint1': axis is missing, (1, 0, 0) is used"

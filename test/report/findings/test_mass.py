@@ -83,7 +83,7 @@ def test_7_g_beside_what_is_fixed_to_it_are_found(link):
     [found] = findings(changed(text, link, mass=0.007), 'grams')
     assert found.subjects == (link,) and 'N m' in found.effect
     # 7 kg is no hand; 15 g of a finger do not tell what it weighs either.
-    said = float(found.effect.split('as much as its neighbours, ')[1].removesuffix(' kg'))
+    said = float(found.effect.split('as much as its neighbors, ')[1].removesuffix(' kg'))
     assert 0.5 < said < 2.0
 
 

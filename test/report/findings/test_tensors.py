@@ -32,7 +32,7 @@ def test_a_missing_decimal_point_is_found_and_mended(link, entry):
         make_report(changed(text, link, tensor={entry: 10.0 * right}), samples=100).verdict
         == 'usable'
     )
-    assert f'{entry}="{right:.6g}" belongs to a real body' in found.advice
+    assert f'{entry}="{right:.6g}" is physically possible' in found.advice
     assert '10 times too large' in found.advice
     assert 'gravity torques do not change' in found.effect
 
@@ -58,7 +58,7 @@ def test_a_public_arm_with_a_missing_decimal_point():
     izz = float(inertia.split('izz="')[1].split('"')[0])
     [found] = findings(changed(text, 'link2', tensor={'izz': 10.0 * izz}), 'triangle_inequality')
     assert found.subjects == ('link2',)
-    assert f'izz="{izz:.6g}" belongs to a real body' in found.advice
+    assert f'izz="{izz:.6g}" is physically possible' in found.advice
 
 
 def test_rounding_is_a_note():
@@ -152,4 +152,4 @@ def test_rounding_is_not_shown_as_a_moment():
 def test_several_too_large_ones_are_said_in_words():
     text = changed(changed(arm(), 'link3', tensor=2.0), 'link4', tensor=1.5)
     [found] = findings(text, 'inertia_too_large')
-    assert 'as if its mass were 1 m from its centre, in a link of 0.3 m' in found.what
+    assert 'as if its mass were 1 m from its center, in a link of 0.3 m' in found.what

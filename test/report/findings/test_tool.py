@@ -37,7 +37,7 @@ def test_a_gripper_that_is_seen_without_mass_is_a_warning():
 def test_an_arm_that_ends_in_its_flange_is_a_note(text):
     [found] = findings(text)
     assert found.severity == 'note'
-    assert 'until it is known' in found.effect
+    assert 'without its mass' in found.effect
 
 
 def test_it_is_not_told_twice():

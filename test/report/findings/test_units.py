@@ -38,7 +38,7 @@ def test_an_effort_limit_that_no_motor_has_is_found(effort, severity):
     [found] = findings(arm(effort=effort), 'effort_limit_too_large')
     assert (found.severity, len(found.subjects)) == (severity, 5)
     # The one that has most to hold is told.
-    assert "'joint2': gravity asks at most" in found.effect and 'mean nothing' in found.effect
+    assert "'joint2': gravity needs at most" in found.effect and 'mean nothing' in found.effect
 
 
 def test_what_a_strong_motor_has_is_no_finding():

@@ -1,6 +1,12 @@
 """Numbers and names as findings say them."""
 
-from dynamics_node.report.findings.words import kilograms, listed, names, number, percent
+from dynamics_node.report.formatting import (
+    enumeration,
+    kilograms,
+    plain_number,
+    plain_percent,
+    quoted_names,
+)
 import pytest
 
 
@@ -19,7 +25,7 @@ import pytest
     ],
 )
 def test_numbers_have_three_digits(value, text):
-    assert number(value) == text
+    assert plain_number(value) == text
 
 
 def test_masses_and_shares_have_their_units():
@@ -29,7 +35,7 @@ def test_masses_and_shares_have_their_units():
         '2 kg',
         '0 kg',
     ]
-    assert [percent(share) for share in (0.5, 2.0, 30.0, 1e-6)] == [
+    assert [plain_percent(share) for share in (0.5, 2.0, 30.0, 1e-6)] == [
         '50 %',
         '200 %',
         '30 times',
@@ -38,6 +44,6 @@ def test_masses_and_shares_have_their_units():
 
 
 def test_many_names_are_counted():
-    assert names(['a']) == "'a'" and names('ab') == "'a' and 'b'"
-    assert names('abcdefg') == "'a', 'b', 'c', 'd', 'e' and 2 more"
-    assert listed([], 0) == ''
+    assert quoted_names(['a']) == "'a'" and quoted_names('ab') == "'a' and 'b'"
+    assert quoted_names('abcdefg') == "'a', 'b', 'c', 'd', 'e' and 2 more"
+    assert enumeration([], 0) == ''

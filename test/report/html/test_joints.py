@@ -1,6 +1,6 @@
 """The table of joints."""
 
-from dynamics_node.report.html.numbers import number, percent
+from dynamics_node.report.formatting import number, percent
 from support.page_reader import plain, reading
 from support.report_pages import arm7_report
 

@@ -1,6 +1,6 @@
 """The tables of links and bodies."""
 
-from dynamics_node.report.html.numbers import number
+from dynamics_node.report.formatting import number
 from support.page_reader import reading
 from support.report_pages import arm7_report, refused_report
 

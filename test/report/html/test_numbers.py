@@ -2,7 +2,7 @@
 
 import math
 
-from dynamics_node.report.html.numbers import count, number, percent, position, quantity, vector
+from dynamics_node.report.formatting import count, number, percent, position, quantity, vector
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest

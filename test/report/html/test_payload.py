@@ -1,6 +1,6 @@
 """What the arm can carry, and the conditioning of D, on the page."""
 
-from dynamics_node.report.html.numbers import count, number, quantity
+from dynamics_node.report.formatting import count, number, quantity
 from support.page_reader import plain, reading
 from support.report_pages import arm7_report, unlimited_report
 

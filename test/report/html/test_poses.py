@@ -1,6 +1,6 @@
 """The poses of the 3D view: those of the report, each with its numbers."""
 
-from dynamics_node.report.html.numbers import number
+from dynamics_node.report.formatting import number
 from dynamics_node.report.html.poses import poses
 import numpy as np
 import pytest

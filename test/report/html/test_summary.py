@@ -1,6 +1,6 @@
 """The first screen of the page."""
 
-from dynamics_node.report.html.numbers import count, number, percent, quantity
+from dynamics_node.report.formatting import count, number, percent, quantity
 from support.page_reader import plain, reading
 from support.report_pages import arm7_report, refused_report, unlimited_report, weak_report
 

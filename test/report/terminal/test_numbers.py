@@ -2,7 +2,7 @@
 
 import math
 
-from dynamics_node.report.terminal.numbers import fixed, short, shorts, vector
+from dynamics_node.report.formatting import fixed, fixed_vector, short, short_vector
 
 
 def test_three_digits():
@@ -23,5 +23,5 @@ def test_three_digits():
 
 
 def test_rows_and_rounded_zeros():
-    assert fixed(-1e-9) == '0.000' and vector((0.1, -0.25, -1e-12)) == '0.100 -0.250 0.000'
-    assert vector(None) == '-' and shorts((1.0, 2.5e-5)) == '1 2.5e-05'
+    assert fixed(-1e-9) == '0.000' and fixed_vector((0.1, -0.25, -1e-12)) == '0.100 -0.250 0.000'
+    assert fixed_vector(None) == '-' and short_vector((1.0, 2.5e-5)) == '1 2.5e-05'
