@@ -16,8 +16,8 @@ setup(
     name=package_name,
     version='0.1.0',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
-    # What the page of the model report is made of: styles, scripts, parts of its markup.
-    package_data={f'{package_name}.report.html': ['assets/*']},
+    # The page of the model report: styles, scripts and Jinja2 templates.
+    package_data={f'{package_name}.report.html': ['assets/*', 'templates/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
@@ -34,7 +34,7 @@ setup(
     install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'scipy', 'yourdfpy'],
     extras_require={
         'demo': ['mujoco', 'matplotlib', 'rich'],
-        'report': ['rich', 'plotly'],
+        'report': ['rich', 'jinja2', 'plotly'],
         'test': ['pytest', 'pytest-xdist', 'hypothesis', 'pin', 'mujoco', 'example-robot-data'],
     },
     python_requires='>=3.10',

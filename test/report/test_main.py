@@ -4,10 +4,11 @@ import io
 import json
 import os
 from pathlib import Path
+import pty
 import subprocess
 import sys
 
-from dynamics_node.report.__main__ import main
+from dynamics_node.report.__main__ import main, parse
 import pytest
 from support.arms import arm, changed
 from support.robots import ARM7
@@ -181,7 +182,7 @@ def refusing(*names):
         f'        if name.split(".")[0] in {names!r}:\n'
         '            raise ModuleNotFoundError(f"No module named {name!r}", name=name)\n'
         'sys.meta_path.insert(0, Refuse())\n'
-        'from dynamics_node.report.__main__ import main\n'
+        'from dynamics_node.report.__main__ import main, parse\n'
         'sys.exit(main())\n'
     )
 
@@ -264,3 +265,78 @@ def test_it_reads_a_pipe_that_has_a_path(robot):
 def test_no_name_is_no_robot(capsys):
     assert main(['']) == 2
     assert "got '', which is empty" in capsys.readouterr().err
+
+
+def test_defaults():
+    options = parse(['a.urdf'])
+    assert (options.robot, options.gravity, options.samples, options.seed) == (
+        'a.urdf',
+        (0.0, 0.0, -9.81),
+        4096,
+        1,
+    )
+    assert not (options.json or options.strict or options.html)
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [
+        [],
+        ['a.urdf', '--gravity', '0', '0'],
+        ['a.urdf', '--gravity', '0', '0', 'nan'],
+        ['a.urdf', '--samples', 'many'],
+        ['a.urdf', '--no-such-option'],
+    ],
+)
+def test_unusable_arguments_end_with_2(arguments, capsys):
+    with pytest.raises(SystemExit) as caught:
+        parse(arguments)
+    assert caught.value.code == 2
+    assert 'usage: report' in capsys.readouterr().err
+
+
+def test_negative_numbers_are_no_options():
+    assert parse(['a.urdf', '--gravity', '-9.81', '0', '-0.001']).gravity == [-9.81, 0.0, -0.001]
+
+
+def test_help_says_everything(capsys):
+    with pytest.raises(SystemExit) as caught:
+        parse(['--help'])
+    text = capsys.readouterr().out
+    assert caught.value.code == 0
+    for words in (
+        '--strict',
+        '--json',
+        '--html',
+        'exit codes:',
+        'xacro',
+        '--payload-link',
+        'm/s^2',
+        'notes',
+    ):
+        assert words in text
+    assert max(map(len, text.splitlines())) <= 99
+
+
+def test_the_progress_bar_is_on_standard_error_and_only_on_a_terminal():
+    master, slave = pty.openpty()
+    run = subprocess.Popen(
+        [sys.executable, '-m', 'dynamics_node.report', str(ARM7)],
+        stdout=subprocess.PIPE,
+        stderr=slave,
+        text=True,
+        # Where a CI runs there may be none, or one that cannot go back.
+        env={**os.environ, 'TERM': 'xterm'},
+    )
+    os.close(slave)
+    shown = b''
+    try:
+        while part := os.read(master, 4096):
+            shown += part
+    except OSError:  # the other end is closed
+        pass
+    finally:
+        os.close(master)
+    out = run.communicate(timeout=120)[0]
+    assert run.returncode == 0
+    assert b'%' in shown and '\x1b' not in out and ' % ' not in out.split('Largest')[0]

@@ -1,22 +1,35 @@
-"""The robot as the page's 3D view wants it: how bodies follow joints, and what they weigh."""
+"""Kinematics, masses and poses of the robot for the page's 3D view."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from .plots import gravity_of
+from ..formatting import number, percent, quantity
+from ..report import JointEntry, Report
+from ..workspace_analysis import prismatic_joints
+from ...dynamics import RobotModel
+from ...model import KinematicTree
 from ...model.tree import PRISMATIC
 
-# A solid ball of aluminium is as heavy as the body it stands for: sizes one can believe.
-BALL_DENSITY = 2700.0  # kg/m³
+# Density of the balls that stand for the masses, that of aluminum, kg/m³.
+BALL_DENSITY = 2700.0
+# Position limit above which there is none, rad or m; 1e16 is a common way to write "no limit".
+_FAR = 100.0
+# Range of a slider without limits, from the neutral position, rad and m.
+_HALF_TURN, _HALF_METER = np.pi, 0.5
 
-_FAR = 100.0  # rad or m; some write 1e16 for 'no limit'
 
-
-def scene(model):
+def scene(model: RobotModel) -> dict[str, Any]:
     """
-    Return what moves on the page: plain lists, for JSON.
+    Return the robot as plain lists for JSON.
 
-    The page computes positions and gravity torques of any pose itself, by the formulas of
-    docs/mathematics.md, so that sliders work without a server; a test holds both against
-    `RobotModel`.
+    The page computes poses and gravity torques itself with the formulas of docs/mathematics.md,
+    so that the sliders work without a server; a test compares both with `RobotModel`.
 
     Parameters
     ----------
@@ -25,7 +38,7 @@ def scene(model):
     Returns
     -------
     dict
-        `joints`, `neutral` (n,), `lower` and `upper` (n,) where sliders end, `continuous`,
+        `joints`, `neutral` (n,), `lower` and `upper` (n,) (ends of the sliders), `continuous`,
         `prismatic`, `limit` (n,) (N m or N, None if none); per body k: `body`, `parent`,
         `slides`, `coordinate`, `multiplier`, `offset`, `placement` (3, 4), `axis`, `mass`,
         `com`, `ball` (radius, m), `ellipsoid` (3, 3) (columns: semi-axes, m); `sticks`: pairs of
@@ -42,7 +55,7 @@ def scene(model):
         'lower': lower.tolist(),
         'upper': upper.tolist(),
         'continuous': model.is_continuous.tolist(),
-        'prismatic': [kind == PRISMATIC for kind in _kinds(model)],
+        'prismatic': prismatic_joints(model),
         'limit': efforts,
         'body': list(tree.body_names),
         'parent': tree.parent.tolist(),
@@ -61,9 +74,9 @@ def scene(model):
     }
 
 
-def slider_ends(model):
+def slider_ends(model: RobotModel) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """
-    Return where the sliders of the joints end: their limits, or something to play with.
+    Return the ends of the joints' sliders.
 
     Parameters
     ----------
@@ -72,30 +85,29 @@ def slider_ends(model):
     Returns
     -------
     lower, upper : numpy.ndarray, shape (n,)
-        rad or m; half a turn or half a metre from the neutral position where there is no limit,
-        or one so far away that it says nothing.
+        The limits, rad or m; half a turn or half a meter from the neutral position without a
+        limit, or with a limit that is too far away to mean anything.
 
     """
     neutral, limits = model.neutral_position, model.position_limits
-    turns = np.array([kind != PRISMATIC for kind in _kinds(model)], dtype=bool)
-    way = np.where(turns, np.pi, 0.5)
+    way = np.where(prismatic_joints(model), _HALF_METER, _HALF_TURN)
     is_near = np.abs(limits) < _FAR
     lower = np.where(is_near[:, 0], limits[:, 0], neutral - way)
     upper = np.where(is_near[:, 1], limits[:, 1], neutral + way)
     return lower, upper
 
 
-def ball_radius(mass):
-    """Return the radius of a ball of aluminium of a mass (kg), m."""
+def ball_radius(mass: float) -> float:
+    """Return the radius of an aluminum ball with a mass (kg), m."""
     return float(np.cbrt(3.0 * max(float(mass), 0.0) / (4.0 * np.pi * BALL_DENSITY)))
 
 
-def ellipsoid(J):
+def ellipsoid(J: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     Return the solid ellipsoid that has this pseudo-inertia.
 
     A solid ellipsoid of mass m with semi-axes a has the second moments m a² / 5 about the planes
-    through its centre.
+    through its center.
 
     Parameters
     ----------
@@ -117,32 +129,112 @@ def ellipsoid(J):
         return np.zeros((3, 3))
     com = _com(J)
     moments, directions = np.linalg.eigh(J[:3, :3] - mass * np.outer(com, com))
-    # What is a little below zero is rounding of a flat body.
+    # Moments slightly below zero are rounding errors of a flat body.
     return directions * np.sqrt(5.0 * np.maximum(moments, 0.0) / mass)
 
 
-def _kinds(model):
-    """Return the kinds of the independent joints, in the order of q."""
-    tree = model.tree
-    kinds = dict(zip(tree.body_names, tree.kind.tolist(), strict=True))
-    return [kinds[name] for name in model.joint_names]
-
-
-def _com(J):
+def _com(J: NDArray[np.float64]) -> NDArray[np.float64]:
     return J[:3, 3] / J[3, 3] if J[3, 3] > 0.0 else np.zeros(3)
 
 
-def _sticks(tree):
-    """Return the lines of the stick figure: pairs of (body, point in its frame); -1: base."""
-    sticks = []
+def _sticks(tree: KinematicTree) -> list[list[list[Any]]]:
+    # The lines of the stick figure: pairs of (body, point in its frame); -1 is the base.
+    sticks: list[list[list[Any]]] = []
     for k, parent in enumerate(tree.parent):
         sticks.append([[int(parent), [0.0, 0.0, 0.0]], [k, [0.0, 0.0, 0.0]]])
     carriers = {int(parent) for parent in tree.parent}
     for k in range(len(tree.body_names)):
-        # The last body of a chain goes on to the farthest of its links, the tool say.
+        # The last body of a chain extends to the farthest of its links, a tool for example.
         if k not in carriers:
             tips = [link.placement[:3, 3] for link in tree.links.values() if link.body == k]
             far = max(tips, key=np.linalg.norm)
             if far.any():
                 sticks.append([[k, [0.0, 0.0, 0.0]], [k, far.tolist()]])
     return sticks
+
+
+def poses(report: Report) -> list[dict[str, Any]]:
+    """
+    Return the poses that the 3D view offers.
+
+    Parameters
+    ----------
+    report : Report
+        Of a usable robot.
+
+    Returns
+    -------
+    list of dict
+        `label`, `caption` (a sentence), `q` (n,) in rad or m, and `joint`: the index of the joint
+        whose worst pose it is, None for the others.
+
+    """
+    return [*_robot_poses(report), *_worst_poses(report)]
+
+
+def _robot_poses(report: Report) -> list[dict[str, Any]]:
+    assert report.model is not None
+    entries = [
+        _pose(
+            'neutral',
+            'The neutral pose: zero, or the nearest position within the limits.',
+            report.model.neutral_position.tolist(),
+        )
+    ]
+    payload, D = report.payload, report.conditioning
+    if payload is not None and payload.limiting_position is not None:
+        entries.append(
+            _pose(
+                'least payload',
+                f'Here {payload.limiting_joint} is at its limit with '
+                f'{quantity(payload.everywhere, "kg", 3)} at {payload.link}: that can be held at '
+                'every pose.',
+                payload.limiting_position,
+            )
+        )
+    if payload is not None and payload.best_position and payload.best_joint is not None:
+        entries.append(
+            _pose(
+                'most payload',
+                f'The best of the sampled poses: {quantity(payload.best, "kg", 3)} at '
+                f'{payload.link}, limited by {payload.best_joint}.',
+                payload.best_position,
+            )
+        )
+    if D is not None:
+        entries.append(
+            _pose(
+                'worst conditioning',
+                f'The condition number of D is {number(D.worst, 3)} here; '
+                f'{D.weakest_joint} moves the least inertia.',
+                D.position,
+            )
+        )
+    return entries
+
+
+def _worst_poses(report: Report) -> list[dict[str, Any]]:
+    by_name = {joint.name: joint for joint in report.joints if joint.gravity is not None}
+    return [
+        _pose(name, _worst_caption(by_name[name]), gravity_of(by_name[name]).position, index)
+        for index, name in enumerate(report.joint_names)
+        if name in by_name
+    ]
+
+
+def _worst_caption(joint: JointEntry) -> str:
+    load = gravity_of(joint)
+    of_limit = ''
+    if not np.isnan(load.share):
+        limit = quantity(joint.effort, joint.effort_unit)
+        of_limit = f', {percent(load.share)} of its limit of {limit}'
+    return (
+        f'The worst pose of {joint.name}: gravity asks for '
+        f'{quantity(load.worst, joint.effort_unit)}{of_limit}.'
+    )
+
+
+def _pose(
+    label: str, caption: str, q: Sequence[float], joint: int | None = None
+) -> dict[str, Any]:
+    return {'label': label, 'caption': caption, 'q': [float(value) for value in q], 'joint': joint}

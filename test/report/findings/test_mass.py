@@ -1,4 +1,4 @@
-"""Masses that are missing, negative or in grams."""
+"""Masses, centers of mass and missing tools."""
 
 from xml.etree import ElementTree
 
@@ -7,19 +7,11 @@ from dynamics_node.report import make_report
 import numpy as np
 import pytest
 from support.arms import arm, changed, G
-from support.robots import ARM7, public_robot
+from support.findings import findings
+from support.robots import ARM7, public_robot, public_robots
 
 PANDA = 'panda_description/urdf/panda.urdf'
 XARM7 = 'xarm_description/urdf/xarm7.urdf'
-
-
-def findings(text, kind, **options):
-    """Return the findings of a kind."""
-    return [
-        finding
-        for finding in make_report(text, samples=500, **options).findings
-        if finding.kind == kind
-    ]
 
 
 def test_a_sound_arm_has_no_findings():
@@ -181,3 +173,107 @@ def test_a_negative_mass_is_refused_and_told():
 def test_our_own_arm_is_clean():
     report = make_report(ARM7)
     assert report.is_clean and report.findings == ()
+
+
+def test_millimeters_written_as_meters_are_found():
+    [found] = findings(changed(arm(), 'link3', com=[125.0, 0.0, 0.0]), 'far_com')
+    assert (found.severity, found.subjects) == ('warning', ('link3',))
+    assert '125 m' in found.what and 'a thousandth of that, 0.125 m' in found.effect
+    right = make_report(arm(), samples=300)
+    joint = next(joint for joint in right.joints if f"'{joint.name}'" in found.effect)
+    assert f'would be {joint.gravity.magnitude:.3g} N m' in found.effect
+
+
+def test_coordinates_of_the_whole_robot_are_found():
+    [found] = findings(changed(arm(), 'link5', com=[1.1, 0.0, 0.0]), 'far_com')
+    assert found.subjects == ('link5',)
+
+
+def test_a_center_of_mass_a_little_outside_is_no_finding():
+    assert not findings(changed(arm(), 'link3', com=[0.3, 0.1, 0.0]), 'far_com')
+
+
+def test_the_share_that_is_said_is_that_of_the_number():
+    [found] = findings(changed(arm(), 'link5', com=[0.0, 0.0, 1.5]), 'far_com')
+    assert 'a tenth of that, 0.15 m' in found.effect
+
+
+FRAME = (
+    '<link name="tool0"/><joint name="f" type="fixed"><parent link="link5"/>'
+    '<child link="tool0"/><origin xyz="0.15 0 0"/></joint></robot>'
+)
+
+
+def test_a_gripper_that_is_seen_without_mass_is_a_warning():
+    [found] = findings(changed(arm(), 'gripper', inertial=False), 'missing_gripper')
+    assert (found.severity, found.subjects) == ('warning', ('gripper',))
+    # 1 kg at 0.3 + 0.25 + 0.2 + 0.15 m from joint 2.
+    torque = G * 0.9
+    assert f"{torque:.3g} N m to joint 'joint2', {torque / 3.0:.3g} %" in found.effect
+    assert 'payload.link: gripper' in found.advice
+
+
+@pytest.mark.parametrize(
+    'text',
+    [arm(tool=False).replace('</robot>', FRAME), arm(tool=False)],
+    ids=['a frame', 'nothing'],
+)
+def test_an_arm_that_ends_in_its_flange_is_a_note(text):
+    [found] = findings(text, 'missing_gripper')
+    assert found.severity == 'note'
+    assert 'without its mass' in found.effect
+
+
+def test_it_is_not_told_twice():
+    report = make_report(changed(arm(), 'gripper', inertial=False), samples=100)
+    assert [finding.kind for finding in report.findings] == ['missing_gripper']
+
+
+def test_a_gripper_with_mass_is_no_finding():
+    assert not findings(arm(), 'missing_gripper')
+
+
+def test_fingers_are_a_gripper():
+    fingers = ''.join(
+        f'<link name="part{i}"><inertial><mass value="0.1"/><inertia ixx="1e-4" ixy="0" ixz="0" '
+        f'iyy="1e-4" iyz="0" izz="1.2e-4"/></inertial></link><joint name="s{i}" type="prismatic">'
+        f'<parent link="link5"/><child link="part{i}"/><axis xyz="0 1 0"/>'
+        '<limit lower="0" upper="0.1" effort="50" velocity="1"/></joint>'
+        for i in range(2)
+    )
+    assert not findings(
+        arm(tool=False).replace('</robot>', fingers + '</robot>'), 'missing_gripper'
+    )
+
+
+def test_which_public_robots_have_none():
+    # Those that end in a flange, a tool frame or a gripper without mass; no leg, no head.
+    warned, noted = set(), set()
+    for name in public_robots():
+        if not any(
+            part in name
+            for part in (
+                'ur3',
+                'ur5',
+                'ur10_robot',
+                'xarm',
+                'panda.urdf',
+                'kinova',
+                'z1',
+                'so10',
+                'solo',
+                'go1',
+                'tiago_no_hand',
+                'talos_left_arm',
+            )
+        ):
+            continue
+        for finding in findings(public_robot(name), 'missing_gripper'):
+            (warned if finding.severity == 'warning' else noted).add(name.split('/')[-1])
+    assert warned == {'ur3_gripper.urdf', 'ur5_gripper.urdf'}
+    assert noted >= {'ur3_robot.urdf', 'ur5_robot.urdf', 'ur10_robot.urdf', 'xarm7.urdf'}
+    assert not any(
+        word in name
+        for name in noted
+        for word in ('panda', 'kinova', 'z1', 'so10', 'solo', 'anymal', 'go1')
+    )

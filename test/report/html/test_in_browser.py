@@ -6,7 +6,7 @@ import re
 
 from dynamics_node import RobotModel
 from dynamics_node.report.html import page
-from dynamics_node.report.html.plot_parts import LONGEST
+from dynamics_node.report.html.plots import LONGEST
 from dynamics_node.report.html.scene import scene
 from matplotlib.image import imread
 import numpy as np

@@ -1,4 +1,4 @@
-"""The largest gravity torque: closed forms, and Pinocchio with an optimiser of its own."""
+"""The largest gravity torque: closed forms, and Pinocchio with an optimizer of its own."""
 
 import math
 
@@ -19,19 +19,19 @@ XARM7 = 'xarm_description/urdf/xarm7.urdf'
 KINOVA = 'kinova_description/robots/kinova.urdf'
 
 
-def study(text, samples=500, seed=1, gravity=DOWN):
+def analyze(text, samples=500, seed=1, gravity=DOWN):
     return WorkspaceAnalysis.from_description(read_urdf(text), gravity, samples, seed)
 
 
 def test_a_pendulum_is_worst_where_it_is_horizontal():
-    position, torque = study(pendulum(2.0, 0.4)).worst[0]
+    position, torque = analyze(pendulum(2.0, 0.4)).worst[0]
     assert abs(torque) == pytest.approx(2.0 * G * 0.4, rel=1e-12)
     assert abs(math.cos(position[0])) == pytest.approx(1.0, abs=1e-9)
 
 
 @pytest.mark.parametrize('lower, upper', [(0.3, 1.2), (1.0, 2.9), (-9.0, -7.0), (2.0, 2.4)])
 def test_a_pendulum_with_limits_is_worst_within_them(lower, upper):
-    position, torque = study(pendulum(2.0, 0.4, lower, upper)).worst[0]
+    position, torque = analyze(pendulum(2.0, 0.4, lower, upper)).worst[0]
     grid = np.cos(np.linspace(lower, upper, 200_001))
     assert abs(torque) == pytest.approx(2.0 * G * 0.4 * np.abs(grid).max(), rel=1e-9)
     assert lower <= position[0] <= upper
@@ -40,7 +40,7 @@ def test_a_pendulum_with_limits_is_worst_within_them(lower, upper):
 def test_a_horizontal_arm_is_the_sum_of_its_weights_times_their_levers():
     masses, lengths = (3.0, 2.0, 1.0), (0.5, 0.4, 0.3)
     text = arm(masses, lengths, tool=False, axes=('0 1 0',) * 3, limits=(-3, 3))
-    found = study(text)
+    found = analyze(text)
     for joint in range(3):
         lever, expected = 0.0, 0.0
         for mass, length in zip(masses[joint:], lengths[joint:], strict=True):
@@ -50,14 +50,14 @@ def test_a_horizontal_arm_is_the_sum_of_its_weights_times_their_levers():
 
 
 def test_a_vertical_axis_holds_nothing():
-    assert study(arm()).worst[0][1] == 0.0
-    upright = study(arm(), gravity=(0.0, 9.81, 0.0)).worst[0][1]
+    assert analyze(arm()).worst[0][1] == 0.0
+    upright = analyze(arm(), gravity=(0.0, 9.81, 0.0)).worst[0][1]
     assert abs(upright) > 10.0
 
 
 def test_a_slide_lifts_what_it_carries():
     text = pendulum(2.0).replace('revolute', 'prismatic').replace('0 -1 0', '0 0 1')
-    assert study(text).worst[0][1] == pytest.approx(2.0 * G, rel=1e-12)
+    assert analyze(text).worst[0][1] == pytest.approx(2.0 * G, rel=1e-12)
 
 
 def gravity(oracle, names, q):
@@ -69,7 +69,7 @@ def gravity(oracle, names, q):
 def brute_force(path, seed):
     """Return each joint's largest torque by Pinocchio: 4000 positions, the best 6 optimised."""
     oracle = PinocchioOracle(path.read_text())
-    found = study(path)
+    found = analyze(path)
     names, (lower, upper) = list(found.model.joint_names), found.ranges.T
     rng = np.random.default_rng(seed)
     q = lower + rng.random((4000, len(names))) * (upper - lower)
@@ -96,11 +96,11 @@ def brute_force(path, seed):
 
 
 @pytest.mark.parametrize('robot', [UR5, PANDA, XARM7, 'arm7'])
-def test_nothing_larger_is_found_by_pinocchio_and_an_optimiser(robot):
+def test_nothing_larger_is_found_by_pinocchio_and_an_optimizer(robot):
     path = ARM7 if robot == 'arm7' else public_robot(robot)
     _, largest = brute_force(path, seed=5)
-    ours = np.array([abs(torque) for _, torque in study(path, samples=4096).worst])
-    # The optimiser stops a little before the top; neither may be above the other by more.
+    ours = np.array([abs(torque) for _, torque in analyze(path, samples=4096).worst])
+    # The optimizer stops a little before the top; neither may be above the other by more.
     np.testing.assert_allclose(ours, largest, rtol=1e-5, atol=1e-6)
     assert (ours >= largest * (1.0 - 1e-9) - 1e-9).all()
 
@@ -108,7 +108,7 @@ def test_nothing_larger_is_found_by_pinocchio_and_an_optimiser(robot):
 @pytest.mark.parametrize('robot', [UR5, PANDA, XARM7, KINOVA])
 def test_what_is_found_is_there(robot):
     path = public_robot(robot)
-    oracle, found = PinocchioOracle(path.read_text()), study(path)
+    oracle, found = PinocchioOracle(path.read_text()), analyze(path)
     for joint, (position, torque) in enumerate(found.worst):
         assert (position >= found.ranges[:, 0]).all() and (position <= found.ranges[:, 1]).all()
         expected = gravity(oracle, list(found.model.joint_names), position)[joint]
@@ -119,13 +119,13 @@ def test_what_is_found_is_there(robot):
 def test_it_hardly_depends_on_the_seed(robot):
     largest = np.array(
         [
-            [abs(torque) for _, torque in study(public_robot(robot), 4096, seed).worst]
+            [abs(torque) for _, torque in analyze(public_robot(robot), 4096, seed).worst]
             for seed in range(6)
         ]
     )
     spread = np.ptp(largest, axis=0)
     sampled = np.array(
-        [np.abs(study(public_robot(robot), 4096, seed).torques).max(axis=0) for seed in range(6)]
+        [np.abs(analyze(public_robot(robot), 4096, seed).torques).max(axis=0) for seed in range(6)]
     )
     # The samples alone spread by up to some percent.
     assert (spread <= 1e-6 * largest.max(axis=0)).all()
@@ -138,7 +138,7 @@ def test_of_several_tops_the_highest_is_found_from_every_seed(robot):
     # From the best samples alone some seeds ended 0.6 % below the top here.
     text = random_urdf(robot, joints=8)
     largest = np.array(
-        [[abs(torque) for _, torque in study(text, 2000, seed).worst] for seed in range(3)]
+        [[abs(torque) for _, torque in analyze(text, 2000, seed).worst] for seed in range(3)]
     )
     np.testing.assert_allclose(
         largest, np.broadcast_to(largest.max(axis=0), largest.shape), rtol=1e-6, atol=1e-9
@@ -155,7 +155,7 @@ def test_joints_that_mimic_are_followed():
     q = np.linspace(-3.0, 3.0, 600_001)
     # V = g (m1 l1/2 sin q + m2 (l1 sin q + l2/2 sin 3 q)), G = dV/dq.
     torque = G * ((2.0 * 0.2 + 1.5 * 0.4) * np.cos(q) + 1.5 * 0.15 * 3.0 * np.cos(3.0 * q))
-    found = study(text)
+    found = analyze(text)
     assert abs(found.worst[0][1]) == pytest.approx(np.abs(torque).max(), rel=1e-6)
 
 

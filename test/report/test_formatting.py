@@ -1,8 +1,24 @@
-"""Numbers on the page: four digits, never more than is known, never markup."""
+"""Numbers and names as text: on the page, in findings and in the terminal."""
 
 import math
 
-from dynamics_node.report.formatting import count, number, percent, position, quantity, vector
+from dynamics_node.report.formatting import (
+    count,
+    enumeration,
+    fixed,
+    fixed_vector,
+    kilograms,
+    number,
+    percent,
+    plain_number,
+    plain_percent,
+    position,
+    quantity,
+    quoted_names,
+    short,
+    short_vector,
+    vector,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -38,7 +54,7 @@ def test_a_number_is_written_as_people_do(value, shown):
 
 
 def read(shown):
-    """Return the number that somebody reads."""
+    """Return the number that a reader sees."""
     plain = shown.replace('−', '-')
     raised = ''.join(sign for sign in plain if sign in _RAISED)
     if not raised:
@@ -88,3 +104,64 @@ def test_words_with_numbers():
     assert vector(None) == '–'
     assert count(1, 'joint') == '1 joint' and count(3, 'joint') == '3 joints'
     assert count(2, 'body', 'bodies') == '2 bodies'
+
+
+@pytest.mark.parametrize(
+    'value, text',
+    [
+        (0.0, '0'),
+        (7.0, '7'),
+        (0.12345, '0.123'),
+        (123.456, '123'),
+        (99999.0, '99999'),
+        (1e-5, '1e-05'),
+        (-2.5, '-2.5'),
+        (1e6, '1e+06'),
+        (300.0, '300'),
+    ],
+)
+def test_numbers_have_three_digits(value, text):
+    assert plain_number(value) == text
+
+
+def test_masses_and_shares_have_their_units():
+    assert [kilograms(mass) for mass in (0.007, 0.1, 2.0, 0.0)] == [
+        '7 g',
+        '0.1 kg',
+        '2 kg',
+        '0 kg',
+    ]
+    assert [plain_percent(share) for share in (0.5, 2.0, 30.0, 1e-6)] == [
+        '50 %',
+        '200 %',
+        '30 times',
+        'less than 0.01 %',
+    ]
+
+
+def test_many_names_are_counted():
+    assert quoted_names(['a']) == "'a'" and quoted_names('ab') == "'a' and 'b'"
+    assert quoted_names('abcdefg') == "'a', 'b', 'c', 'd', 'e' and 2 more"
+    assert enumeration([], 0) == ''
+
+
+def test_three_digits():
+    assert [short(value) for value in (0.0, 12.345, 0.00123, 1e-7, 1e6, -3.0)] == [
+        '0',
+        '12.3',
+        '0.00123',
+        '1.0e-07',
+        '1.0e+06',
+        '-3',
+    ]
+    assert [short(value) for value in (math.nan, None, math.inf, -math.inf)] == [
+        '-',
+        '-',
+        '∞',
+        '-∞',
+    ]
+
+
+def test_rows_and_rounded_zeros():
+    assert fixed(-1e-9) == '0.000' and fixed_vector((0.1, -0.25, -1e-12)) == '0.100 -0.250 0.000'
+    assert fixed_vector(None) == '-' and short_vector((1.0, 2.5e-5)) == '1 2.5e-05'
