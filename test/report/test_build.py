@@ -3,7 +3,6 @@
 import json
 
 from dynamics_node import ArgumentError, RobotDescriptionError, RobotModel
-from dynamics_node.errors import RobotDescriptionError
 from dynamics_node.report import make_report, to_json
 from fuzz.descriptions import descriptions
 from hypothesis import given, settings

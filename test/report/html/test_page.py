@@ -1,4 +1,4 @@
-"""The page without a browser: complete, self-contained, escaped, with the numbers of the report."""
+"""The page without a browser: complete, self-contained, escaped, with the report's numbers."""
 
 import base64
 from dataclasses import replace
@@ -80,9 +80,9 @@ def test_the_page_refers_to_nothing_outside(report):
     seen = reading(report)
     for tag, attributes in seen.elements:
         assert tag not in ('link', 'img', 'iframe', 'object', 'embed', 'base', 'form', 'video')
-        for name in ASKING & set(attributes):
-            assert attributes[name].startswith('#'), (tag, name)
-        assert not [name for name in attributes if name.startswith('on')]
+        for key in ASKING & set(attributes):
+            assert attributes[key].startswith('#'), (tag, key)
+        assert not [key for key in attributes if key.startswith('on')]
     for style in [
         *seen.styles,
         *(attributes.get('style') or '' for _, attributes in seen.elements),
@@ -339,8 +339,7 @@ def test_the_table_of_joints_says_what_the_report_says():
         assert worst == number(joint.gravity.worst)
         assert share == plain(percent(joint.gravity.share))
         assert left == number(joint.gravity.payload_left, 3)
-        for name in report.joint_names:
-            assert name in row[-1]
+        assert all(other in row[-1] for other in report.joint_names)
 
 
 def test_the_tables_of_links_and_bodies_say_what_the_report_says():
