@@ -270,8 +270,6 @@ def _capacity(payload: PayloadEntry, place: str) -> Text:
     text = Text('It can hold ')
     text.append(f'{short(payload.everywhere)} kg', style='bold')
     text.append(f" at {place} everywhere ('{payload.limiting_joint}' allows no more)")
-    if math.isfinite(payload.best):
-        text.append(f', {short(payload.best)} kg at the best of the sampled positions')
     return text
 
 
@@ -319,6 +317,6 @@ def _summary(report: Report) -> Text:
     if report.verdict == 'refused':
         verdict = 'refused: RobotModel and the node do not take it'
     elif worst == 'problem':
-        verdict = 'not to be trusted'
+        verdict = 'fix before use'
     style = 'bold green' if worst in (None, 'note') else _COLORS[worst or 'note']
     return Text(f'{report.robot}: {verdict}; {text}', style=style)

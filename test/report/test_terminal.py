@@ -68,7 +68,7 @@ def test_findings_stand_last_with_the_worst_next_to_the_verdict():
     text = printed(report)
     assert text.index('Largest gravity') < text.index('Findings') < text.index('warning [grams]')
     assert text.index('warning [grams]') < text.index('problem [triangle')
-    assert text.rstrip().endswith('arm: not to be trusted; 1 problem, 1 warning, 0 notes')
+    assert text.rstrip().endswith('arm: fix before use; 1 problem, 1 warning, 0 notes')
 
 
 def test_colours_only_where_they_are_wanted(arm7, monkeypatch):

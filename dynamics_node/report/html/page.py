@@ -106,7 +106,7 @@ def environment() -> Environment:
     )
     formats = ('number', 'quantity', 'percent', 'position', 'vector', 'count', 'sentence')
     env.filters |= {name: getattr(formatting, name) for name in formats}
-    env.filters |= {'name': breakable, 'script_data': script_data}
+    env.filters |= {'name': breakable, 'file_name': file_name, 'script_data': script_data}
     env.globals |= {'pose': pose, 'infinity': math.inf}
     return env
 
@@ -114,6 +114,11 @@ def environment() -> Environment:
 def breakable(name: object) -> Markup:
     """Return a name as escaped markup in which a line may end after '_' and '/'."""
     return escape(name).replace('_', Markup('_<wbr>')).replace('/', Markup('/<wbr>'))
+
+
+def file_name(source: str) -> str:
+    """Return the source of a report without its folder, which a shared page must not show."""
+    return Path(source).name
 
 
 def script_data(value: Any) -> Markup:
@@ -178,7 +183,7 @@ def _verdict(report: Report) -> tuple[str, str]:
         return 'refused', 'problem'
     worst = next((severity for severity, amount in report.counts.items() if amount), 'good')
     if worst == 'problem':
-        return f'not to be trusted: {count(report.counts[worst], worst)}', worst
+        return f'fix before use: {count(report.counts[worst], worst)}', worst
     if worst == 'warning':
         return f'usable, with {count(report.counts[worst], worst)}', worst
     return 'usable', 'good'
@@ -247,11 +252,11 @@ def _gravity_tile(joints: list[JointEntry]) -> _Tile:
 def _payload_tile(payload: PayloadEntry, moving_mass: float) -> _Tile:
     label = 'payload at every pose'
     if not moving_mass > 0.0:
-        return _Tile(label, '–', '', 'not known: nothing that moves has a mass')
+        return _Tile(label, '–', '', 'not known: no moving link has a mass')
     if not payload.is_moved:
         return _Tile(label, '–', '', f'no joint moves {payload.link}')
     if math.isinf(payload.everywhere):
-        return _Tile(label, '–', '', 'no effort limit is in the way')
+        return _Tile(label, '–', '', 'no effort limit restricts it')
     return _Tile(
         label,
         number(payload.everywhere, 3),

@@ -22,6 +22,8 @@ BALL_DENSITY = 2700.0
 _FAR = 100.0
 # Range of a slider without limits, from the neutral position, rad and m.
 _HALF_TURN, _HALF_METER = np.pi, 0.5
+# Semi-axis of the ellipsoid of a homogeneous rod, in units of its length.
+_ROD = (5.0 / 12.0) ** 0.5
 
 
 def scene(model: RobotModel) -> dict[str, Any]:
@@ -41,13 +43,15 @@ def scene(model: RobotModel) -> dict[str, Any]:
         `joints`, `neutral` (n,), `lower` and `upper` (n,) (ends of the sliders), `continuous`,
         `prismatic`, `limit` (n,) (N m or N, None if none); per body k: `body`, `parent`,
         `slides`, `coordinate`, `multiplier`, `offset`, `placement` (3, 4), `axis`, `mass`,
-        `com`, `ball` (radius, m), `ellipsoid` (3, 3) (columns: semi-axes, m); `sticks`: pairs of
+        `com`, `ball` (radius, m), `ellipsoid` (3, 3) (columns: semi-axes, m, at most the length
+        of the robot); `sticks`: pairs of
         (body, point); `gravity` (3,).
 
     """
     tree = model.tree
     lower, upper = slider_ends(model)
     bodies = range(len(tree.body_names))
+    extent = _extent(tree)
     efforts = [None if np.isnan(limit) else float(limit) for limit in model.effort_limits]
     return {
         'joints': list(model.joint_names),
@@ -68,7 +72,7 @@ def scene(model: RobotModel) -> dict[str, Any]:
         'mass': [float(tree.inertia[k, 3, 3]) for k in bodies],
         'com': [_com(tree.inertia[k]).tolist() for k in bodies],
         'ball': [ball_radius(tree.inertia[k, 3, 3]) for k in bodies],
-        'ellipsoid': [ellipsoid(tree.inertia[k]).tolist() for k in bodies],
+        'ellipsoid': [_capped(ellipsoid(tree.inertia[k]), extent).tolist() for k in bodies],
         'sticks': _sticks(tree),
         'gravity': model.gravity.tolist(),
     }
@@ -131,6 +135,29 @@ def ellipsoid(J: NDArray[np.float64]) -> NDArray[np.float64]:
     moments, directions = np.linalg.eigh(J[:3, :3] - mass * np.outer(com, com))
     # Moments slightly below zero are rounding errors of a flat body.
     return directions * np.sqrt(5.0 * np.maximum(moments, 0.0) / mass)
+
+
+def _extent(tree: KinematicTree) -> float:
+    # Length of the longest chain, m, each body up to its farthest link or twice its center of
+    # mass; infinite without any length.
+    lengths = [2.0 * float(np.linalg.norm(_com(J))) for J in tree.inertia]
+    for link in tree.links.values():
+        if link.body >= 0:
+            tip = float(np.linalg.norm(link.placement[:3, 3]))
+            lengths[link.body] = max(lengths[link.body], tip)
+    to_joint: list[float] = []
+    for k, parent in enumerate(tree.parent):
+        step = float(np.linalg.norm(tree.placement[k][:3, 3]))
+        to_joint.append(step + (to_joint[parent] if parent >= 0 else 0.0))
+    return max((a + b for a, b in zip(to_joint, lengths, strict=True)), default=0.0) or np.inf
+
+
+def _capped(axes: NDArray[np.float64], extent: float) -> NDArray[np.float64]:
+    # The ellipsoid of a wrong tensor must not hide the robot: none is longer than that of a rod
+    # as long as the robot.
+    longest = _ROD * extent
+    lengths = np.linalg.norm(axes, axis=0)
+    return axes * np.minimum(1.0, longest / np.maximum(lengths, longest))
 
 
 def _com(J: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -206,7 +233,7 @@ def _robot_poses(report: Report) -> list[dict[str, Any]]:
             _pose(
                 'worst conditioning',
                 f'The condition number of D is {number(D.worst, 3)} here; '
-                f'{D.weakest_joint} moves the least inertia.',
+                f'{D.weakest_joint} has the least inertia.',
                 D.position,
             )
         )
@@ -229,7 +256,7 @@ def _worst_caption(joint: JointEntry) -> str:
         limit = quantity(joint.effort, joint.effort_unit)
         of_limit = f', {percent(load.share)} of its limit of {limit}'
     return (
-        f'The worst pose of {joint.name}: gravity asks for '
+        f'The worst pose of {joint.name}: gravity requires '
         f'{quantity(load.worst, joint.effort_unit)}{of_limit}.'
     )
 

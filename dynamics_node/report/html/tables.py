@@ -165,7 +165,7 @@ def links_table(links: Iterable[LinkEntry]) -> Table:
         Column('mass', 'kg', True),
         Column('center of mass', 'm', True),
         Column('principal moments', 'kg m²', True),
-        Column('can exist'),
+        Column('physically possible'),
         Column('moved by'),
     )
     return Table('links', columns, tuple(_link(link) for link in links))
@@ -191,7 +191,7 @@ def bodies_table(bodies: Iterable[BodyEntry]) -> Table:
         Column('mass', 'kg', True),
         Column('center of mass', 'm', True),
         Column('principal moments', 'kg m²', True),
-        Column('can exist'),
+        Column('physically possible'),
     )
     return Table('bodies', columns, tuple(_body(body) for body in bodies))
 

@@ -194,6 +194,18 @@ def test_the_ellipsoid_of_a_known_solid_is_itself():
     np.testing.assert_allclose(np.abs(ellipsoid(J)), np.diag([0.1, 0.2, 0.3]), atol=1e-12)
 
 
+def test_the_ellipsoid_of_a_wrong_tensor_does_not_hide_the_robot():
+    text = ARM7.read_text().replace('<mass value="1.40208" />', '<mass value="1.4e-6" />')
+    model = RobotModel.from_urdf(text)
+    sticks = scene(model)['sticks']
+    shapes = [np.array(columns) for columns in scene(model)['ellipsoid']]
+    longest = [np.linalg.norm(columns, axis=0).max() for columns in shapes]
+    uncapped = [np.linalg.norm(ellipsoid(J), axis=0).max() for J in model.tree.inertia]
+    assert sticks and max(uncapped) > 10.0 and max(longest) < 2.0
+    for own, whole, J in zip(longest, uncapped, model.tree.inertia, strict=True):
+        assert own == pytest.approx(whole) or (own < whole and J[3, 3] < 0.1)
+
+
 def test_without_mass_there_is_no_shape():
     assert not ellipsoid(np.zeros((4, 4))).any() and ball_radius(0.0) == 0.0
 

@@ -140,7 +140,7 @@ const arm = (() => {
       balls: makeMesh(makeBall(cuts), 'masses', { color: { css: 'mass' }, opacity: 1 }),
       ellipsoids: makeMesh(makeBall(cuts), 'inertia', { color: { css: 'shape' },
         opacity: 0.3 }),
-      centers: { type: 'scatter3d', mode: 'markers', name: 'centres of mass',
+      centers: { type: 'scatter3d', mode: 'markers', name: 'centers of mass',
         hoverinfo: 'text', text: labels.bodies,
         marker: { size: 3, color: { css: 'mass' } } },
       gravity: { type: 'scatter3d', mode: 'lines', name: 'gravity', hoverinfo: 'skip',
@@ -235,7 +235,7 @@ const arm = (() => {
     const rows = robot.joints.map((name, place) => makeRow(robot, name, place, {
       moved: (value) => {
         state.q[place] = value;
-        caption.textContent = 'A pose of your own. The torques are what gravity asks for here.';
+        caption.textContent = 'A pose of your own. These are its gravity torques.';
         pressed(null);
         update();
       },
@@ -311,8 +311,9 @@ const arm = (() => {
     const position = make('span', slide);
     const bar = make('i', make('span', element, 'meter'));
     const limit = robot.limit[place];
-    // Not worth a power of ten beside the weight of the robot.
-    const rounding = 1e-8 * robot.mass.reduce((sum, mass) => sum + mass, 0);
+    // A millionth of the robot's weight at 1 m is shown as 0: rounded angles in the URDF cause it.
+    const rounding = 1e-6 * Math.hypot(...robot.gravity)
+      * robot.mass.reduce((sum, mass) => sum + mass, 0);
     const unit = robot.prismatic[place] ? 'N' : 'N m';
     input.addEventListener('input', () => moved(Number(input.value)));
     button.addEventListener('click', chosen);

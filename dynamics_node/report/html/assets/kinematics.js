@@ -1,5 +1,5 @@
-// Where the bodies of the robot are, and what gravity asks of its joints, at any position.
-// docs/mathematics.md: the same pose A_k and G as in the library, held against it by a test.
+// Poses of the bodies and gravity torques of the joints at any position: A_k and G of
+// docs/mathematics.md. A test compares both with the library.
 // A pose is 12 numbers, the first three rows of the 4x4 matrix, row by row.
 const kinematics = (() => {
   'use strict';

@@ -1,4 +1,4 @@
-// Draws the figures of the page with plotly, in the colours of the style sheet.
+// Draws the figures of the page with plotly, in the colors of the style sheet.
 const plots = (() => {
   'use strict';
 
@@ -18,7 +18,7 @@ const plots = (() => {
     if (width && target.clientWidth && !fits) Plotly.Plots.resize(target);
   }));
 
-  // A colour is {css: name} in a figure, so that no text of a robot can be taken for one.
+  // A color is {css: name} in a figure: no text of a robot can be mistaken for one.
   function resolve(value, style) {
     if (Array.isArray(value)) return value.map((part) => resolve(part, style));
     if (value === null || typeof value !== 'object') return value;
