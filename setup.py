@@ -35,7 +35,15 @@ setup(
     extras_require={
         'demo': ['mujoco', 'matplotlib', 'rich'],
         'report': ['rich', 'jinja2', 'plotly'],
-        'test': ['pytest', 'pytest-xdist', 'hypothesis', 'pin', 'mujoco', 'example-robot-data'],
+        'test': [
+            'pytest',
+            'pytest-xdist',
+            'hypothesis',
+            'pin',
+            'mujoco',
+            'example-robot-data',
+            'selenium',
+        ],
     },
     python_requires='>=3.10',
     zip_safe=True,
