@@ -25,9 +25,9 @@ class LinkEntry:
     mass : float
         kg; 0 without <inertial>, NaN if its numbers cannot be read.
     com : tuple of 3 floats or None
-        Centre of mass in the link's frame, m; None without mass.
+        Center of mass in the link's frame, m; None without mass.
     principal_moments : tuple of 3 floats or None
-        About the centre of mass, kg m², ascending; None without <inertial>.
+        About the center of mass, kg m², ascending; None without <inertial>.
     violations : tuple of str
         Reasons why mass and inertia are physically impossible.
     carrier : str or None
@@ -69,7 +69,7 @@ class BodyEntry:
     com : tuple of 3 floats or None
         In the body's frame, m; None without mass.
     principal_moments : tuple of 3 floats
-        About the centre of mass, kg m², ascending.
+        About the center of mass, kg m², ascending.
     is_physical : bool
 
     """

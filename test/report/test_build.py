@@ -41,7 +41,7 @@ def test_progress_grows_from_nothing_to_all():
         ({'gravity': (0, 0)}, 'gravity: expected three'),
         ({'samples': 0}, 'samples: expected 1 to'),
         ({'seed': -1}, 'seed: expected'),
-        ({'link': 'nobody'}, "link: 'nobody' is not"),
+        ({'link': 'unknown'}, "link: 'unknown' is not"),
         ({'point': (0, 1)}, 'point: expected three'),
         ({'point': (0, 0, np.nan)}, 'point'),
     ],
@@ -74,7 +74,7 @@ def test_one_sample_is_enough():
     )
 
 
-def test_the_names_of_a_robot_do_no_harm():
+def test_long_and_unprintable_names_are_shortened_and_escaped():
     report = make_report(arm(name='a\x85b&#10;c' + 'd' * 500), samples=10)
     assert len(report.robot) < 70 and report.robot.isprintable()
 
@@ -219,7 +219,7 @@ def test_mimic_joints_of_a_public_arm_follow_theirs():
         {'joint2': 'joint2'},
         {'joint2': 'joint3', 'joint3': 'joint2'},
         {'joint1': 'joint2', 'joint2': 'joint3', 'joint3': 'joint2'},
-        {'joint2': 'nobody'},
+        {'joint2': 'unknown'},
     ],
 )
 def test_joints_that_mimic_each_other_in_a_circle_are_refused_and_shown(leaders):

@@ -111,8 +111,8 @@ def test_what_cannot_be_read_is_one_clear_error(robot, capsys, text, words):
     'options, words',
     [
         (
-            ['--payload-link', 'nobody'],
-            "link: 'nobody' is not a link of the robot; expected one of base, link1",
+            ['--payload-link', 'unknown'],
+            "link: 'unknown' is not a link of the robot; expected one of base, link1",
         ),
         (['--samples', '0'], 'samples: expected 1 to'),
         (['--seed', '-1'], 'seed: expected'),
@@ -123,7 +123,7 @@ def test_wrong_values_say_what_was_expected(robot, capsys, options, words):
     assert words in capsys.readouterr().err
 
 
-def test_a_folder_is_no_robot(tmp_path, capsys):
+def test_a_folder_is_not_a_urdf_file(tmp_path, capsys):
     assert main([str(tmp_path)]) == 2
     assert 'which is a folder' in capsys.readouterr().err
 
@@ -163,7 +163,7 @@ def test_options_reach_the_report(robot, capsys):
     assert (plain['payload']['link'], plain['payload']['point']) == ('link4', [0.0, 0.0, 0.1])
 
 
-def test_a_page_is_written_and_said(robot, tmp_path, capsys):
+def test_a_page_is_written_and_its_path_printed(robot, tmp_path, capsys):
     page = tmp_path / 'page.html'
     assert main([robot(arm()), '--json', '--samples', '50', '--html', str(page)]) == 0
     printed = capsys.readouterr()
@@ -262,7 +262,7 @@ def test_it_reads_a_pipe_that_has_a_path(robot):
     assert 'arm: usable' in answer.stdout
 
 
-def test_no_name_is_no_robot(capsys):
+def test_an_empty_path_is_refused(capsys):
     assert main(['']) == 2
     assert "got '', which is empty" in capsys.readouterr().err
 

@@ -10,7 +10,7 @@ from support.arms import arm, changed
 from support.robots import ARM7, public_robot
 
 
-def printed(report, width=80, colours=False):
+def printed(report, width=80, color=False):
     """Return what is printed."""
     out = io.StringIO()
     print_report(
@@ -19,8 +19,8 @@ def printed(report, width=80, colours=False):
             file=out,
             width=width,
             highlight=False,
-            force_terminal=colours,
-            color_system='standard' if colours else None,
+            force_terminal=color,
+            color_system='standard' if color else None,
         ),
     )
     return out.getvalue()
@@ -71,8 +71,8 @@ def test_findings_stand_last_with_the_worst_next_to_the_verdict():
     assert text.rstrip().endswith('arm: fix before use; 1 problem, 1 warning, 0 notes')
 
 
-def test_colours_only_where_they_are_wanted(arm7, monkeypatch):
-    assert '\x1b[' in printed(arm7, colours=True)
+def test_color_only_where_they_are_wanted(arm7, monkeypatch):
+    assert '\x1b[' in printed(arm7, color=True)
     assert '\x1b[' not in printed(arm7)
     monkeypatch.setenv('NO_COLOR', '1')
     out = io.StringIO()
@@ -103,10 +103,10 @@ def test_names_are_no_markup():
 )
 def test_every_robot_can_be_printed(text):
     report = make_report(text, samples=20)
-    said = printed(report)
-    assert ('refused' in said) == (report.verdict == 'refused')
+    text = printed(report)
+    assert ('refused' in text) == (report.verdict == 'refused')
     for finding in report.findings:
-        assert f'[{finding.kind}]' in said
+        assert f'[{finding.kind}]' in text
 
 
 def test_a_gripper_that_weighs_nothing_is_shown():
@@ -115,7 +115,7 @@ def test_a_gripper_that_weighs_nothing_is_shown():
     assert 'massless' in row
 
 
-def test_a_guess_is_called_a_guess_with_the_way_to_choose():
+def test_a_guessed_payload_link_names_the_option_to_choose_another():
     assert '--payload-link LINK' in printed(make_report(arm(), samples=20), 120)
     assert '--payload-link' not in printed(make_report(arm(), samples=20, link='gripper'), 120)
 
@@ -124,5 +124,5 @@ def test_a_robot_without_masses_holds_nothing_that_is_known():
     text = arm()
     for link in ('link1', 'link2', 'link3', 'link4', 'link5', 'gripper'):
         text = changed(text, link, inertial=False)
-    said = printed(make_report(text, samples=20), 120)
-    assert 'It can hold' not in said and 'What it can hold is not known' in said
+    text = printed(make_report(text, samples=20), 120)
+    assert 'It can hold' not in text and 'What it can hold is not known' in text

@@ -37,7 +37,7 @@ def test_starts_are_the_samples_where_a_torque_is_largest_and_smallest(analysis)
     assert (sign < 0).sum() > 60 and (sign > 0).sum() > 60
 
 
-def test_joints_that_do_not_matter_stand_at_neutral(analysis):
+def test_irrelevant_joints_are_at_their_neutral_position(analysis):
     # Joint 1 turns about the vertical and joint 5 about the arm itself.
     position, torque = analysis.worst[1]
     assert position[0] == position[4] == 0.0
@@ -102,7 +102,7 @@ def test_limits_are_the_range():
     assert notes == ('',) * 5
 
 
-def test_what_has_no_limit_turns_once_or_stands():
+def test_joints_without_limits_turn_once_or_are_fixed():
     text = changed(arm(), 'joint1', kind='continuous')
     text = changed(text, 'joint5', kind='prismatic', limit={'lower': None, 'upper': None})
     text = changed(text, 'joint2', limit={'upper': '1e31'})
@@ -113,7 +113,7 @@ def test_what_has_no_limit_turns_once_or_stands():
     assert notes[0] and notes[1] and notes[4] and not notes[2]
 
 
-def test_positions_are_uniform_within_the_range_and_come_again_with_the_seed():
+def test_positions_are_uniform_within_the_range_and_reproducible():
     given = np.array([[-1.0, 3.0], [0.0, 0.0]])
     q = sample_positions(given, 20_000, 3)
     assert (q[:, 0] >= -1.0).all() and (q[:, 0] < 3.0).all() and not q[:, 1].any()
@@ -175,7 +175,7 @@ def test_what_is_left_brings_the_joint_to_its_limit():
     assert joint.gravity.share == pytest.approx(joint.gravity.magnitude / 60.0)
 
 
-def test_over_the_limit_nothing_is_left_and_without_limit_nobody_knows():
+def test_payload_left_is_zero_above_the_limit_and_nan_without_limit():
     assert load(arm(effort=20), 1).payload_left == 0.0
     found = load(arm(effort='inf'), 1)
     assert math.isnan(found.payload_left) and math.isnan(found.share)
@@ -190,7 +190,7 @@ def test_what_is_only_rounding_is_zero():
         assert found.payload_left == math.inf
 
 
-def test_a_mass_that_does_not_turn_a_joint_leaves_no_trillion_of_kilograms():
+def test_rounding_errors_do_not_lead_to_huge_payloads():
     for name in (
         'anymal_b_simple_description/robots/anymal-kinova.urdf',
         'tiago_description/robots/tiago.urdf',
@@ -247,13 +247,13 @@ def test_an_arm_that_cannot_hold_itself_carries_nothing():
     assert (found.everywhere, found.limiting_joint) == (0.0, 'joint2')
 
 
-def test_without_limits_nobody_is_in_the_way():
+def test_without_limits_the_payload_is_infinite():
     found = payload(arm(effort='inf'))
     assert (found.everywhere, found.limiting_joint) == (math.inf, None)
     assert found.unlimited_joints == tuple(f'joint{i}' for i in range(1, 6))
 
 
-def test_what_stands_on_the_base_carries_anything():
+def test_a_link_on_the_base_carries_any_payload():
     found = payload(arm(), link='base')
     assert (found.is_moved, found.everywhere) == (False, math.inf)
 

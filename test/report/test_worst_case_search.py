@@ -106,7 +106,7 @@ def test_nothing_larger_is_found_by_pinocchio_and_an_optimizer(robot):
 
 
 @pytest.mark.parametrize('robot', [UR5, PANDA, XARM7, KINOVA])
-def test_what_is_found_is_there(robot):
+def test_the_worst_torques_are_those_of_pinocchio(robot):
     path = public_robot(robot)
     oracle, found = PinocchioOracle(path.read_text()), analyze(path)
     for joint, (position, torque) in enumerate(found.worst):
@@ -134,7 +134,7 @@ def test_it_hardly_depends_on_the_seed(robot):
 
 
 @pytest.mark.parametrize('robot', [27, 36])
-def test_of_several_tops_the_highest_is_found_from_every_seed(robot):
+def test_the_highest_of_several_maxima_is_found_from_every_seed(robot):
     # From the best samples alone some seeds ended 0.6 % below the top here.
     text = random_urdf(robot, joints=8)
     largest = np.array(
@@ -159,7 +159,7 @@ def test_joints_that_mimic_are_followed():
     assert abs(found.worst[0][1]) == pytest.approx(np.abs(torque).max(), rel=1e-6)
 
 
-def test_the_report_says_the_same():
+def test_the_report_contains_the_worst_torque():
     [swing] = make_report(pendulum(2.0, 0.4, effort=10.0)).joints
     assert swing.gravity.magnitude == pytest.approx(7.848)
     assert swing.gravity.share == pytest.approx(0.7848)

@@ -20,7 +20,7 @@ def arm(
     """
     Return a serial arm as URDF text: links 'base', 'link1'... along x, joints 'joint1'...
 
-    Each link is a homogeneous rod of its length, 6 cm thick, with its centre of mass in the
+    Each link is a homogeneous rod of its length, 6 cm thick, with its center of mass in the
     middle; 'gripper' of 0.7 kg is fixed to the last one.
 
     """

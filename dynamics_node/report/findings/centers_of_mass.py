@@ -54,8 +54,7 @@ def _occurrence(
         ((factor, text) for factor, text in _FACTORS if factor * distance < 2.0 * around),
         _FACTORS[-1],
     )
-    inertial = context.links[entry.name].inertial
-    assert inertial is not None and entry.com is not None  # it has a mass
+    com = factor * np.array(entry.com)
     return Occurrence(
         WARNING,
         'far_com',
@@ -66,7 +65,7 @@ def _occurrence(
         partial(
             torque_effect,
             context,
-            {entry.name: changed(inertial, com=factor * np.array(entry.com))},
+            {entry.name: changed(context.inertial(entry.name), com=com)},
             f'if it were {text}, {plain_number(factor * distance)} m',
         ),
         'URDF has meters: were centimeters or millimeters written, or the coordinates of the '

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..report import LinkEntry, Report
 from ..workspace_analysis import WorkspaceAnalysis
 from ...dynamics import RobotModel
-from ...urdf import Examination, Joint, Link, RobotDescription
+from ...urdf import Examination, Inertial, Joint, Link, RobotDescription
 
 # Number of samples at which D is compared.
 _SAMPLES = 256
@@ -61,6 +61,12 @@ class FindingContext:
     def joints(self) -> dict[str, Joint]:
         """Joints by name."""
         return {joint.name: joint for joint in self.description.joints}
+
+    def inertial(self, link: str) -> Inertial:
+        """Return the inertial parameters of a link that has them."""
+        inertial = self.links[link].inertial
+        assert inertial is not None
+        return inertial
 
     @cached_property
     def moved(self) -> list[LinkEntry]:

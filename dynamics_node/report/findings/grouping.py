@@ -81,6 +81,11 @@ def group_findings(
     ]
 
 
+def relevant(occurrences: Iterable[Occurrence], share: float) -> list[Occurrence]:
+    """Return the occurrences whose effect is at least a share, or unknown (NaN)."""
+    return [one for one in occurrences if not one.known_effect.share < share]
+
+
 def _single(occurrence: Occurrence) -> Finding:
     return Finding(
         severity=occurrence.severity,

@@ -12,10 +12,9 @@ from .effects import changed, payload_effect, torque_effect
 from .grouping import group_findings, Occurrence
 from .kinds import NOTE, PROBLEM, WARNING
 from .placeholders import is_placeholder
-from .tensors import is_too_large
+from .tensors import is_too_large, radius_of_gyration
 from ..formatting import kilograms, plain_number, quoted_names
 from ..report import Finding, LinkEntry
-from ...urdf import Inertial
 
 # Mass ratio at which a body is suspiciously lighter than those before and behind it.
 _LIGHTER = 30.0
@@ -80,7 +79,7 @@ def _negative(context: FindingContext) -> list[Finding]:
             partial(
                 torque_effect,
                 context,
-                {entry.name: changed(_inertial(context, entry), mass=0.0)},
+                {entry.name: changed(context.inertial(entry.name), mass=0.0)},
                 'if it weighed nothing; a negative mass lifts the arm instead',
             ),
             'write its mass without the minus sign, or remove the <inertial>',
@@ -196,7 +195,7 @@ def _grams(context: FindingContext) -> list[Finding]:
         if not _is_plausible(mass, neighbors) or mass > _LIKELY * max(neighbors):
             mass = _typical_mass(neighbors)
             condition = f'if it weighed as much as its neighbors, {kilograms(mass)}'
-        heavier = changed(_inertial(context, entry), mass=mass)
+        heavier = changed(context.inertial(entry.name), mass=mass)
         effect = torque_effect(context, {entry.name: heavier}, condition)
         if effect.share < _RELEVANT and not context.body_children[_carrier(entry)]:
             continue  # at the end of a chain, propellers for example may be as light
@@ -217,12 +216,6 @@ def _grams(context: FindingContext) -> list[Finding]:
     return group_findings(
         occurrences, lambda count: f'{count} links are far lighter than their neighbors'
     )
-
-
-def _inertial(context: FindingContext, entry: LinkEntry) -> Inertial:
-    inertial = context.links[entry.name].inertial
-    assert inertial is not None  # only for links with a mass
-    return inertial
 
 
 def _typical_mass(masses: Sequence[float]) -> float:
@@ -260,10 +253,11 @@ def _suspicion(
     if not neighbors:
         return None
     if judges_moments and _has_moments_of_heavier(context, entry, body, neighbors):
+        radius = plain_number(radius_of_gyration(entry))
         return _Suspicion(
             f"link '{entry.name}' weighs {kilograms(entry.mass)}, but its moments of inertia "
-            f'are those of a part of {plain_number(_gyration(entry))} m radius (sqrt(I/m)) in a '
-            f'robot that reaches {plain_number(context.reach)} m; its neighbors weigh '
+            f'are those of a part of {radius} m radius (sqrt(I/m)) in a robot that reaches '
+            f'{plain_number(context.reach)} m; its neighbors weigh '
             f'{kilograms(max(neighbors))}',
             neighbors,
         )
@@ -308,18 +302,12 @@ def _mass_before(context: FindingContext, carrier: str) -> float:
     )
 
 
-def _gyration(entry: LinkEntry) -> float:
-    # Radius of gyration about the axis of the largest moment, m.
-    largest = max(entry.principal_moments or (0.0,))
-    return math.sqrt(largest / entry.mass) if largest > 0.0 else 0.0
-
-
 def _has_moments_of_heavier(
     context: FindingContext, entry: LinkEntry, body: float, neighbors: Sequence[float]
 ) -> bool:
     if entry.mass >= 0.1 * max(neighbors):
         return False
-    gyration, reach = _gyration(entry), context.reach
+    gyration, reach = radius_of_gyration(entry), context.reach
     if gyration > _GYRATION_OF_ALL * reach > 0.0 and _is_plausible(1000.0 * entry.mass, neighbors):
         return True
     if entry.mass >= 0.5 * body:
@@ -329,5 +317,5 @@ def _has_moments_of_heavier(
         entry.mass < _LIGHT
         and is_too_large(context, entry)
         and _is_plausible(1000.0 * entry.mass, neighbors)
-        and not is_placeholder(_inertial(context, entry).tensor)
+        and not is_placeholder(context.inertial(entry.name).tensor)
     )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .context import FindingContext
 from .effects import changed, inertia_effect, torque_effect
-from .grouping import group_findings, Occurrence
+from .grouping import group_findings, Occurrence, relevant
 from .kinds import NOTE, WARNING
 from ..formatting import plain_number, quoted_names
 from ..report import Finding, LinkEntry
@@ -42,7 +42,7 @@ def find_placeholders(context: FindingContext) -> list[Finding]:
     ]
     placeholders, balanced = [], []
     for entry in entries:
-        inertial = _inertial(context, entry)
+        inertial = context.inertial(entry.name)
         if is_placeholder(inertial.tensor):
             placeholders.append(_placeholder(context, entry, inertial))
         if _is_balanced(context, entry, inertial):
@@ -51,25 +51,14 @@ def find_placeholders(context: FindingContext) -> list[Finding]:
         *_copies(context),
         *_unit_masses(context, entries),
         *group_findings(
-            _relevant(placeholders),
+            relevant(placeholders, _RELEVANT),
             lambda count: f'{count} links have a tensor that looks typed by hand',
         ),
         *group_findings(
-            _relevant(balanced),
+            relevant(balanced, _RELEVANT),
             lambda count: f'{count} heavy links have their center of mass exactly on their joint',
         ),
     ]
-
-
-def _relevant(occurrences: list[Occurrence]) -> list[Occurrence]:
-    # An unknown effect, NaN, stays.
-    return [one for one in occurrences if not one.known_effect.share < _RELEVANT]
-
-
-def _inertial(context: FindingContext, entry: LinkEntry) -> Inertial:
-    inertial = context.links[entry.name].inertial
-    assert inertial is not None  # only for links with a mass
-    return inertial
 
 
 def is_placeholder(tensor: NDArray[np.float64]) -> bool:
@@ -126,7 +115,7 @@ def _unit_masses(context: FindingContext, entries: list[LinkEntry]) -> list[Find
     exact = [entry for entry in entries if entry.mass == 1.0]
     if len(exact) < 2:
         return []
-    inertials = {entry.name: _inertial(context, entry) for entry in exact}
+    inertials = {entry.name: context.inertial(entry.name) for entry in exact}
     has_placeholder = any(is_placeholder(inertial.tensor) for inertial in inertials.values())
     doubled = {name: changed(inertial, mass=2.0) for name, inertial in inertials.items()}
     return [
@@ -145,7 +134,7 @@ def _copies(context: FindingContext) -> list[Finding]:
     # Equal links side by side are fingers, legs and wheels; one behind the other they are copied.
     groups: dict[tuple[float, ...], list[LinkEntry]] = {}
     for entry in context.moved_with_mass:
-        inertial = _inertial(context, entry)
+        inertial = context.inertial(entry.name)
         key = (inertial.mass, *inertial.placement.ravel(), *inertial.tensor.ravel())
         groups.setdefault(key, []).append(entry)
     chains = (_longest_chain(context, entries) for entries in groups.values())
@@ -157,7 +146,7 @@ def _is_copied(context: FindingContext, chain: list[LinkEntry]) -> bool:
         return False
     lengths = {round(context.size_without_com(entry.name), 6) for entry in chain}
     # Equal parts of equal length are a chain of modules.
-    return len(lengths) > 1 or is_placeholder(_inertial(context, chain[0]).tensor)
+    return len(lengths) > 1 or is_placeholder(context.inertial(chain[0].name).tensor)
 
 
 def _copied(context: FindingContext, chain: list[LinkEntry]) -> Finding:
@@ -166,7 +155,7 @@ def _copied(context: FindingContext, chain: list[LinkEntry]) -> Finding:
         (
             torque_effect(
                 context,
-                {entry.name: changed(_inertial(context, entry), mass=2.0 * entry.mass)},
+                {entry.name: changed(context.inertial(entry.name), mass=2.0 * entry.mass)},
                 f"if '{entry.name}' weighed twice as much",
             )
             for entry in chain[:_COPIES_TRIED]

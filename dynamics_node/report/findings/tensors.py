@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .context import FindingContext
 from .effects import changed, Effect, inertia_effect, largest, NEGLIGIBLE, UNKNOWN
-from .grouping import group_findings, Occurrence
+from .grouping import group_findings, Occurrence, relevant
 from .kinds import NOTE, PROBLEM, WARNING
 from ..formatting import plain_number, plain_percent
 from ..report import Finding, LinkEntry
@@ -74,24 +74,19 @@ def find_tensors(context: FindingContext) -> list[Finding]:
             ),
         ),
         *group_findings(
-            _relevant(large),
+            relevant(large, _RELEVANT),
             lambda count: (
                 f'{count} links have moments of inertia far too large for their mass and size'
             ),
         ),
         *group_findings(
-            _relevant(shifted),
+            relevant(shifted, _RELEVANT),
             lambda count: (
                 f'{count} links have a tensor that seems to be about the link frame, not about '
                 'the center of mass'
             ),
         ),
     ]
-
-
-def _relevant(occurrences: list[Occurrence]) -> list[Occurrence]:
-    # An unknown effect, NaN, stays.
-    return [one for one in occurrences if not one.known_effect.share < _RELEVANT]
 
 
 def _copies(context: FindingContext, links: set[str]) -> list[Occurrence]:
@@ -290,21 +285,22 @@ def is_too_large(context: FindingContext, entry: LinkEntry) -> bool:
     bool
 
     """
-    gyration = _gyration(entry)
+    gyration = radius_of_gyration(entry)
     return (
         gyration > _GYRATION_OF_LINK * context.size(entry.name)
         and gyration > _GYRATION_OF_REACH * context.reach > 0.0
     )
 
 
-def _gyration(entry: LinkEntry) -> float:
+def radius_of_gyration(entry: LinkEntry) -> float:
+    """Return the radius of gyration (m) about the principal axis of the largest moment."""
     assert entry.principal_moments is not None  # it has a mass
     return math.sqrt(max(0.0, entry.principal_moments[2]) / entry.mass)
 
 
 def _too_large(context: FindingContext, entry: LinkEntry, inertial: Inertial) -> Occurrence:
     assert entry.principal_moments is not None  # it has a mass
-    gyration = _gyration(entry)
+    gyration = radius_of_gyration(entry)
     size = max(context.size(entry.name), 0.05)
     ball = changed(inertial, tensor=0.4 * entry.mass * size**2 * np.eye(3))
     as_if = f'as if its mass were {plain_number(gyration)} m from its center'

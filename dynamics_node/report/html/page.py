@@ -174,7 +174,7 @@ def _policy(scripts: list[str]) -> str:
 def headline(report: Report) -> str:
     """Return the number of findings by severity, '2 problems, 1 note'."""
     parts = [count(amount, severity) for severity, amount in report.counts.items() if amount]
-    return ', '.join(parts) or 'nothing found'
+    return ', '.join(parts) or 'no findings'
 
 
 def _verdict(report: Report) -> tuple[str, str]:

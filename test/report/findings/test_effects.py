@@ -20,7 +20,7 @@ from support.arms import arm
 
 
 @pytest.fixture(scope='module')
-def case():
+def context():
     found = examine_urdf(arms.arm())
     study = WorkspaceAnalysis.from_description(found.description, (0.0, 0.0, -9.81), 500, 1)
     return FindingContext(make_report(arms.arm(), samples=500), found, study)
@@ -32,9 +32,9 @@ def worst(text, joint):
     return entries[joint].gravity.magnitude
 
 
-def test_torques_of_another_mass(case):
-    inertial = changed(case.links['link3'].inertial, mass=6.0)
-    effect = torque_effect(case, {'link3': inertial}, 'if it weighed 6 kg')
+def test_torques_of_another_mass(context):
+    inertial = changed(context.links['link3'].inertial, mass=6.0)
+    effect = torque_effect(context, {'link3': inertial}, 'if it weighed 6 kg')
     before = worst(arms.arm(), 'joint2')
     after = worst(arms.changed(arms.arm(), 'link3', mass=6.0), 'joint2')
     assert effect.text == (
@@ -44,31 +44,31 @@ def test_torques_of_another_mass(case):
     assert effect.share == pytest.approx(after / before - 1.0, rel=1e-6)
 
 
-def test_torques_that_do_not_change(case):
-    text = torque_effect(case, {'link3': case.links['link3'].inertial}, 'as it is').text
+def test_torques_that_do_not_change(context):
+    text = torque_effect(context, {'link3': context.links['link3'].inertial}, 'as it is').text
     assert text.startswith('next to nothing')
-    assert torque_effect(case, {'base': None}, 'without').text == 'none: no joint moves it'
+    assert torque_effect(context, {'base': None}, 'without').text == 'none: no joint moves it'
 
 
-def test_a_payload(case):
-    effect = payload_effect(case, 'gripper', 1.0, 'with 1 kg')
+def test_a_payload(context):
+    effect = payload_effect(context, 'gripper', 1.0, 'with 1 kg')
     before = worst(arms.arm(), 'joint2')
     assert f'would be {before + arms.G * 0.9:.3g} N m instead of {before:.3g}' in effect.text
-    joint, torque = added_torque(case, 'gripper', 1.0)
+    joint, torque = added_torque(context, 'gripper', 1.0)
     assert (joint, torque) == ('joint2', pytest.approx(arms.G * 0.9))
 
 
-def test_inertia_of_another_tensor(case):
-    inertial = case.links['link5'].inertial
+def test_inertia_of_another_tensor(context):
+    inertial = context.links['link5'].inertial
     effect = inertia_effect(
-        case, 'link5', changed(inertial, tensor=0.5 * inertial.tensor), 'with half of it'
+        context, 'link5', changed(inertial, tensor=0.5 * inertial.tensor), 'with half of it'
     )
-    model = case.analysis.model
+    model = context.analysis.model
     half = arms.scaled_tensor(arms.arm(), 'link5', 0.5)
     other = WorkspaceAnalysis.from_description(
         examine_urdf(half).description, (0.0, 0.0, -9.81), 1, 1
     ).model
-    q = case.analysis.positions[:256]
+    q = context.analysis.positions[:256]
     share = (
         np.diagonal(model.mass_matrix(q), axis1=1, axis2=2)
         / np.diagonal(other.mass_matrix(q), axis1=1, axis2=2)
@@ -78,21 +78,21 @@ def test_inertia_of_another_tensor(case):
     assert f'up to {100.0 * share:.3g} % more inertia (D_jj) than with half of it' in effect.text
 
 
-def test_without_a_tree_nothing_is_said(case):
-    nobody = FindingContext(case.report, case.examination, None)
-    assert torque_effect(nobody, {'link3': None}, '').text == ''
-    assert payload_effect(nobody, 'link3', 1.0, '').text == ''
+def test_without_a_tree_the_effect_is_unknown(context):
+    without = FindingContext(context.report, context.examination, None)
+    assert torque_effect(without, {'link3': None}, '').text == ''
+    assert payload_effect(without, 'link3', 1.0, '').text == ''
 
 
 def test_masses_and_lengths_of_an_arm():
-    case = FindingContext(make_report(arm(), samples=10), examine_urdf(arm()), None)
-    assert case.moving_mass == pytest.approx(3.0 + 2.5 + 2.0 + 1.2 + 0.8 + 0.7)
-    assert case.body_mass['joint5'] == pytest.approx(1.5)
-    assert case.mass_behind['joint3'] == pytest.approx(1.2 + 0.8 + 0.7)
-    assert case.body_parent['joint1'] is None and case.body_children['joint2'] == ['joint3']
-    assert case.reach == pytest.approx(0.1 + 0.3 + 0.3 + 0.25 + 0.2 + 0.15)
-    assert case.size('link3') == pytest.approx(0.3) and case.has_shapes
-    assert [entry.name for entry in case.moved][:2] == ['link1', 'link2']
+    context = FindingContext(make_report(arm(), samples=10), examine_urdf(arm()), None)
+    assert context.moving_mass == pytest.approx(3.0 + 2.5 + 2.0 + 1.2 + 0.8 + 0.7)
+    assert context.body_mass['joint5'] == pytest.approx(1.5)
+    assert context.mass_behind['joint3'] == pytest.approx(1.2 + 0.8 + 0.7)
+    assert context.body_parent['joint1'] is None and context.body_children['joint2'] == ['joint3']
+    assert context.reach == pytest.approx(0.1 + 0.3 + 0.3 + 0.25 + 0.2 + 0.15)
+    assert context.size('link3') == pytest.approx(0.3) and context.has_shapes
+    assert [entry.name for entry in context.moved][:2] == ['link1', 'link2']
 
 
 def test_a_cycle_ends():
@@ -110,11 +110,11 @@ def test_a_cycle_ends():
     )
     report = make_report(text, samples=10)
     assert report.verdict == 'refused'
-    case = FindingContext(report, examine_urdf(text), None)
-    assert case.reach == 0.0 and set(case.mass_behind) == {'j'}
+    context = FindingContext(report, examine_urdf(text), None)
+    assert context.reach == 0.0 and set(context.mass_behind) == {'j'}
 
 
-def hit(subject, weight=0.0, advice='mend it', severity='warning'):
+def hit(subject, weight=0.0, advice='fix it', severity='warning'):
     """Return a hit."""
     return Occurrence(
         severity,
@@ -128,23 +128,23 @@ def hit(subject, weight=0.0, advice='mend it', severity='warning'):
     )
 
 
-def test_one_is_told_as_it_is():
+def test_a_single_occurrence_is_reported_literally():
     [found] = group_findings([hit('a')], str)
     assert (found.what, found.effect, found.subjects) == ('a is light', 'a sinks', ('a',))
 
 
-def test_many_are_told_with_the_weightiest_first():
+def test_several_occurrences_are_ordered_by_weight():
     hits = [hit(name, weight) for weight, name in enumerate('abcdef')]
     [found] = group_findings(hits, lambda count: f'{count} are light')
     assert found.what == ("6 are light: 'f' (7 g), 'e' (7 g), 'd' (7 g), 'c' (7 g) and 2 more")
     assert found.effect == "'f': f sinks" and found.subjects == tuple('fedcba')
-    assert found.advice == 'mend it'
+    assert found.advice == 'fix it'
 
 
-def test_advice_that_differs_says_for_whom():
+def test_advice_that_differs_names_its_subject():
     [found] = group_findings([hit('a', 1.0, 'glue it'), hit('b')], str)
     assert found.advice == "'a': glue it"
 
 
-def test_severities_are_apart():
+def test_severities_are_not_grouped():
     assert len(group_findings([hit('a'), hit('b', severity='note')], str)) == 2

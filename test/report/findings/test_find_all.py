@@ -12,7 +12,7 @@ import pytest
 from support.arms import arm, changed
 from support.robots import PENDULUM, public_robot, public_robots, random_urdf
 
-# Public robots about which nothing is to be said but notes.
+# Public robots with notes at most.
 CLEAN = {
     'panda.urdf',
     'kinova.urdf',
@@ -111,9 +111,9 @@ def test_every_problem_is_in_the_report(text):
     assert report.refusals == caught.value.problems
     assert (report.verdict, report.model, report.payload) == ('refused', None, None)
     assert report.counts['problem'] and not report.is_clean
-    said = ' '.join(finding.what for finding in report.findings)
+    texts = ' '.join(finding.what for finding in report.findings)
     for problem in report.refusals:
-        assert problem in said or 'inertia is not physical' in problem or 'mass is -' in problem
+        assert problem in texts or 'inertia is not physical' in problem or 'mass is -' in problem
     for entry in report.joints:
         assert entry.gravity is None
 
@@ -136,7 +136,7 @@ def test_many_reasons_are_one_finding_with_all_of_them():
         assert reason in found.what
 
 
-def test_what_only_the_model_refuses_is_told_too():
+def test_refusals_by_the_model_alone_are_findings_too():
     # Mimic joints that multiply each other to numbers that no robot has.
     text = arm()
     for i in range(2, 6):
@@ -145,16 +145,16 @@ def test_what_only_the_model_refuses_is_told_too():
             f'name="joint{i}" type="revolute"><mimic joint="joint{i - 1}" multiplier="1e20"/>',
         )
     report = make_report(text, samples=20)
-    told = [finding.what for finding in report.findings if finding.kind == 'refused']
-    assert report.verdict == 'refused' and told == list(report.refusals)
-    assert all('multiplier' in what for what in told)
+    texts = [finding.what for finding in report.findings if finding.kind == 'refused']
+    assert report.verdict == 'refused' and texts == list(report.refusals)
+    assert all('multiplier' in what for what in texts)
 
 
 ROOT = Path(__file__).parents[3]
 SOURCES = ROOT / 'dynamics_node' / 'report' / 'findings'
 
 
-def test_every_kind_is_found_by_somebody_and_tested():
+def test_every_kind_is_used_and_tested():
     code = ' '.join(path.read_text() for path in SOURCES.glob('*.py') if path.name != 'kinds.py')
     tests = ' '.join(
         path.read_text()

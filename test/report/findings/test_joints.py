@@ -11,7 +11,7 @@ from support.findings import findings
 from support.robots import public_robot
 
 
-def test_a_missing_axis_is_told_with_the_torque_about_z():
+def test_a_missing_axis_has_the_torque_about_z_as_effect():
     # Joint 1 turns about z, and about x without its axis: lying on its side it holds the arm.
     text = changed(arm(), 'joint1', axis=False)
     [found] = findings(text, 'missing_axis')
@@ -56,7 +56,7 @@ def test_every_warning_of_the_model_is_in_the_report():
     assert 'reader_warning' not in kinds
 
 
-def test_a_warning_that_nobody_knows_is_told_as_it_is(monkeypatch):
+def test_an_unknown_warning_of_the_reader_is_reported_literally(monkeypatch):
     from dynamics_node.report.findings import joints
 
     monkeypatch.setattr(joints, '_EXPLAINED', ())
@@ -64,13 +64,13 @@ def test_a_warning_that_nobody_knows_is_told_as_it_is(monkeypatch):
     assert found.what == "joint 'joint1': axis is missing, (1, 0, 0) is used"
 
 
-def test_gravity_above_the_limit_is_told_with_how_often():
+def test_gravity_above_the_limit_has_its_share_of_the_samples_as_effect():
     # G = 7.848 cos q, above 5 N m for |cos q| > 0.6371: 1 - 2 acos(0.6371) / pi... of a turn.
     [found] = findings(pendulum(2.0, 0.4, effort=5.0), 'over_effort_limit', 2000)
     assert (found.severity, found.subjects) == ('warning', ('swing',))
     assert '7.85 N m, 157.0 % of its effort limit of 5 N m' in found.what
-    said = float(found.effect.split('at ')[1].split(' %')[0])
-    assert said == pytest.approx(200.0 / np.pi * np.arccos(5.0 / 7.848), abs=3.0)
+    percent = float(found.effect.split('at ')[1].split(' %')[0])
+    assert percent == pytest.approx(200.0 / np.pi * np.arccos(5.0 / 7.848), abs=3.0)
     assert not findings(pendulum(2.0, 0.4, effort=7.9), 'over_effort_limit')
 
 
@@ -110,7 +110,7 @@ def test_an_empty_range_is_a_warning(lower, upper):
     assert 'counts as a joint without limits' in found.effect
 
 
-def test_a_slide_without_limits_stands_still_and_that_is_told():
+def test_a_prismatic_joint_without_limits_is_fixed_and_reported():
     text = changed(arm(), 'joint5', kind='prismatic', limit={'lower': None, 'upper': None})
     [found] = findings(text, 'not_looked_at')
     assert (found.severity, found.subjects) == ('note', ('joint5',))
@@ -118,12 +118,12 @@ def test_a_slide_without_limits_stands_still_and_that_is_told():
     assert joint.range_note and set(joint.gravity.curve_positions) == {0.0}
 
 
-def test_an_effort_limit_below_zero_is_called_so():
+def test_a_negative_effort_limit_is_reported_as_negative():
     [found] = findings(changed(arm(), 'joint2', limit={'effort': -50}), 'zero_effort_limit')
     assert 'below zero' in found.what
 
 
-def test_nobody_knows_what_gravity_asks_of_a_robot_without_masses():
+def test_without_masses_the_finding_states_no_gravity_torque():
     text = arm(effort=0)
     for link in ('link1', 'link2', 'link3', 'link4', 'link5', 'gripper'):
         text = changed(text, link, inertial=False)
@@ -156,7 +156,7 @@ def test_a_few_turns_and_one_joint_that_turns_for_ever_are_no_degrees():
 def test_an_effort_limit_that_no_motor_has_is_found(effort, severity):
     [found] = findings(arm(effort=effort), 'effort_limit_too_large')
     assert (found.severity, len(found.subjects)) == (severity, 5)
-    # The one that has most to hold is told.
+    # The joint with the largest gravity torque comes first.
     assert "'joint2': gravity needs at most" in found.effect and 'mean nothing' in found.effect
 
 

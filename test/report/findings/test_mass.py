@@ -19,7 +19,7 @@ def test_a_sound_arm_has_no_findings():
 
 
 @pytest.mark.parametrize('link, mass', [('link2', 0.007), ('link3', 0.002), ('link1', 0.003)])
-def test_a_link_of_7_g_is_found_and_what_it_hides_is_computed(link, mass):
+def test_a_link_of_7_g_is_found_with_its_effect(link, mass):
     [found] = findings(changed(arm(), link, mass=mass), 'grams')
     assert (found.severity, found.subjects) == ('warning', (link,))
     assert f'{1000.0 * mass:g} g' in found.what
@@ -35,11 +35,11 @@ def test_the_effect_of_7_g_is_that_of_the_robot_with_7_kg():
         make_report(changed(text, 'link2', mass=mass), samples=500) for mass in (0.007, 7.0)
     )
     joint = next(name for name in after.joint_names if f"'{name}'" in found.effect)
-    said = [
+    torques = [
         next(entry.gravity.magnitude for entry in report.joints if entry.name == joint)
         for report in (after, before)
     ]
-    assert f'would be {said[0]:.3g} N m instead of {said[1]:.3g} N m' in found.effect
+    assert f'would be {torques[0]:.3g} N m instead of {torques[1]:.3g} N m' in found.effect
 
 
 @pytest.mark.parametrize('factor', [1.0, 1e-3])
@@ -74,12 +74,12 @@ def test_7_g_beside_what_is_fixed_to_it_are_found(link):
     assert not findings(text, 'grams')
     [found] = findings(changed(text, link, mass=0.007), 'grams')
     assert found.subjects == (link,) and 'N m' in found.effect
-    # 7 kg is no hand; 15 g of a finger do not tell what it weighs either.
-    said = float(found.effect.split('as much as its neighbors, ')[1].removesuffix(' kg'))
-    assert 0.5 < said < 2.0
+    # 7 kg is no hand; 15 g of a finger do not tell its mass either.
+    proposed = float(found.effect.split('as much as its neighbors, ')[1].removesuffix(' kg'))
+    assert 0.5 < proposed < 2.0
 
 
-def test_feet_without_weight_are_no_grams():
+def test_massless_feet_are_no_finding():
     assert not findings(public_robot('hyq_description/robots/hyq_no_sensors.urdf'), 'grams')
 
 
@@ -100,7 +100,7 @@ def test_a_light_link_between_light_ones_is_no_finding():
 
 
 @pytest.mark.parametrize('take', ['inertial', 'mass'])
-def test_a_robot_without_any_inertial_is_told_once_and_loudly(take):
+def test_a_robot_without_inertials_has_one_problem(take):
     text = arm()
     for link in ('link1', 'link2', 'link3', 'link4', 'link5', 'gripper'):
         text = (
@@ -161,7 +161,7 @@ def test_a_mass_that_cannot_be_read_is_no_joint_that_moves_nothing(mass):
     assert [finding.kind for finding in make_report(text, samples=50).findings] == ['refused']
 
 
-def test_a_negative_mass_is_refused_and_told():
+def test_a_negative_mass_is_refused_with_a_finding():
     report = make_report(changed(arm(), 'link3', mass=-2.0), samples=500)
     assert report.verdict == 'refused'
     [found] = [finding for finding in report.findings if finding.kind == 'negative_mass']
@@ -193,7 +193,7 @@ def test_a_center_of_mass_a_little_outside_is_no_finding():
     assert not findings(changed(arm(), 'link3', com=[0.3, 0.1, 0.0]), 'far_com')
 
 
-def test_the_share_that_is_said_is_that_of_the_number():
+def test_a_tenth_of_the_distance_is_tried_first():
     [found] = findings(changed(arm(), 'link5', com=[0.0, 0.0, 1.5]), 'far_com')
     assert 'a tenth of that, 0.15 m' in found.effect
 
@@ -224,7 +224,7 @@ def test_an_arm_that_ends_in_its_flange_is_a_note(text):
     assert 'without its mass' in found.effect
 
 
-def test_it_is_not_told_twice():
+def test_a_missing_gripper_is_not_also_a_massless_shape():
     report = make_report(changed(arm(), 'gripper', inertial=False), samples=100)
     assert [finding.kind for finding in report.findings] == ['missing_gripper']
 

@@ -18,7 +18,7 @@ def diagonal(text, q):
 
 
 @pytest.mark.parametrize('link, entry', [('link2', 'izz'), ('link3', 'iyy')])
-def test_a_missing_decimal_point_is_found_and_mended(link, entry):
+def test_a_missing_decimal_point_is_found_and_corrected(link, entry):
     text = arm()
     right = float(text.split(f'name="{link}"')[1].split(f'{entry}="')[1].split('"')[0])
     [found] = findings(changed(text, link, tensor={entry: 10.0 * right}), 'triangle_inequality')
@@ -39,11 +39,12 @@ def test_the_effect_of_a_missing_decimal_point_is_that_on_d():
     [found] = findings(broken, 'triangle_inequality')
     # Joint 5 turns about x, so D_55 has ixx of link 5 and the gripper and nothing else.
     before, after = diagonal(broken, np.zeros(5))[4], found.effect
-    mended = float(found.advice.split('ixx="')[2].split('"')[0])
-    share = before / diagonal(changed(broken, 'link5', tensor={'ixx': mended}), np.zeros(5))[4]
+    corrected = float(found.advice.split('ixx="')[2].split('"')[0])
+    right = changed(broken, 'link5', tensor={'ixx': corrected})
+    share = before / diagonal(right, np.zeros(5))[4]
     assert "joint 'joint5'" in after
-    said = after.split('up to ')[1]
-    assert said.startswith(
+    share_text = after.split('up to ')[1]
+    assert share_text.startswith(
         f'{share - 1.0:.3g} times more' if share > 11.0 else f'{100.0 * (share - 1.0):.3g} % more'
     )
 
@@ -64,12 +65,12 @@ def test_rounding_is_a_note():
     assert found.severity == 'note' and 'rounding' in found.advice
 
 
-def test_what_stands_on_the_base_is_a_note():
+def test_a_link_on_the_base_is_a_note():
     [found] = findings(changed(arm(), 'base', tensor={'ixx': 5.0}), 'triangle_inequality')
     assert found.severity == 'note' and 'stands on the base' in found.effect
 
 
-def test_many_are_told_in_one():
+def test_several_links_are_one_finding():
     text = arm()
     for link in ('link1', 'link2', 'link3', 'link4'):
         text = changed(text, link, tensor={'izz': 9.0})
@@ -123,7 +124,7 @@ def test_a_tensor_about_the_frame_is_found_where_products_tell():
     assert 'more inertia (D_jj) than with the tensor moved' in found.effect
 
 
-def test_a_negative_multiple_of_the_identity_is_refused_and_told():
+def test_a_negative_multiple_of_the_identity_is_refused_with_a_finding():
     report = make_report(changed(arm(), 'link3', tensor=-0.01), samples=50)
     assert report.verdict == 'refused'
     assert [finding.kind for finding in report.findings] == ['impossible_inertia']
@@ -145,7 +146,7 @@ def test_rounding_is_not_shown_as_a_moment():
     assert 'the two others are 0 and 0' in found.what
 
 
-def test_several_too_large_ones_are_said_in_words():
+def test_several_too_large_tensors_have_their_radii_in_one_finding():
     text = changed(changed(arm(), 'link3', tensor=2.0), 'link4', tensor=1.5)
     [found] = findings(text, 'inertia_too_large')
     assert 'as if its mass were 1 m from its center, in a link of 0.3 m' in found.what
@@ -170,7 +171,7 @@ def test_one_kilogram_and_a_tensor_of_1e_3_are_a_warning():
     assert found.severity == 'warning' and 'exactly 1 kg' in found.what
 
 
-def test_several_masses_of_one_kilogram_are_told_with_what_two_would_do():
+def test_several_masses_of_one_kilogram_have_the_effect_of_two_kilograms():
     text = changed(changed(arm(), 'link4', mass=1.0), 'link3', mass=1.0)
     [found] = findings(text, 'placeholder_mass')
     assert (found.severity, found.subjects) == ('note', ('link3', 'link4'))

@@ -38,8 +38,8 @@ REPORTS = {
     'block': block_report,
     'hostile': hostile_report,
 }
-# Every attribute by which a browser asks for something.
-ASKING = {
+# Attributes with addresses that a browser requests.
+ADDRESSES = {
     'src',
     'href',
     'srcset',
@@ -80,7 +80,7 @@ def test_the_page_refers_to_nothing_outside(report):
     seen = reading(report)
     for tag, attributes in seen.elements:
         assert tag not in ('link', 'img', 'iframe', 'object', 'embed', 'base', 'form', 'video')
-        for key in ASKING & set(attributes):
+        for key in ADDRESSES & set(attributes):
             assert attributes[key].startswith('#'), (tag, key)
         assert not [key for key in attributes if key.startswith('on')]
     for style in [
@@ -117,7 +117,7 @@ def test_plotly_is_there_once_and_only_where_something_is_drawn():
     assert len(page(block_report())) < 60_000
 
 
-def test_names_that_are_attacks_stay_names():
+def test_hostile_names_stay_text():
     seen, safe = reading(hostile_report), reading(arm7_report)
     _, names = hostile_urdf()
     # The same elements as with harmless names: nothing of a name has become one.
@@ -211,7 +211,7 @@ def test_findings_come_first_and_whole(report):
     assert words.index(report.findings[-1].what.lower()) < words.index('as written in the urdf')
 
 
-def test_a_refused_robot_is_called_so_with_every_reason():
+def test_a_refused_robot_lists_every_reason():
     report = refused_report()
     words = reading(refused_report).words.lower()
     assert report.refusals
@@ -238,14 +238,14 @@ def test_the_first_screen_has_the_numbers_that_matter_most():
         (joint for joint in report.joints if joint.gravity is not None),
         key=lambda joint: joint.gravity.share,
     )
-    for said in (
+    for text in (
         f'mass {number(report.total_mass)} kg',
         f'{quantity(report.moving_mass, "kg")} of it moves',
         f'largest share of an effort limit {percent(worst.gravity.share)}',
         f'payload at every pose {number(report.payload.everywhere, 3)} kg',
         f'{number(report.conditioning.median, 3)} worst {number(report.conditioning.worst, 3)}',
     ):
-        assert plain(said) in words
+        assert plain(text) in words
 
 
 def test_the_badge_says_how_bad_it_is():
@@ -253,12 +253,12 @@ def test_the_badge_says_how_bad_it_is():
     assert 'refused refused 2 joints' in reading(refused_report).words
     assert '8 joints, 1 mimic, 13 links' in reading(arm7_report).words
     counts = weak_report().counts
-    said = (
+    badge = (
         f'fix before use: {count(counts["problem"], "problem")}'
         if counts['problem']
         else f'usable, with {count(counts["warning"], "warning")}'
     )
-    assert said in reading(weak_report).words
+    assert badge in reading(weak_report).words
 
 
 def test_without_limits_the_torque_itself_is_shown():
@@ -272,14 +272,14 @@ def test_without_limits_the_torque_itself_is_shown():
 
 def test_the_payload_is_that_of_the_report():
     payload, words = arm7_report().payload, reading(arm7_report).words
-    for said in (
+    for text in (
         f'carried by {payload.link}',
         f'at every pose {quantity(payload.everywhere, "kg", 3)} , limited by '
         f'{payload.limiting_joint}',
         f'best sampled pose {quantity(payload.best, "kg", 3)} , limited by {payload.best_joint}',
     ):
         # A name may be broken into lines after an underscore.
-        assert plain(said).replace('_ ', '_') in words.replace('_ ', '_')
+        assert plain(text).replace('_ ', '_') in words.replace('_ ', '_')
 
 
 def test_joints_without_limits_are_named():

@@ -260,7 +260,7 @@ def test_a_stick_goes_on_to_the_farthest_link_of_the_last_body():
     assert sticks[-1] == [[0, [0.0, 0.0, 0.0]], [0, [0.0, 0.0, 0.4]]]
 
 
-def test_there_is_a_pose_for_every_joint_and_gravity_asks_there_what_is_said():
+def test_every_joint_has_a_pose_with_the_stated_gravity_torque():
     report = arm7_report()
     found = {pose['joint']: pose for pose in poses(report) if pose['joint'] is not None}
     loads = {joint.name: joint.gravity for joint in report.joints}

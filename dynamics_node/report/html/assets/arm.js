@@ -80,24 +80,24 @@ const arm = (() => {
     }
   };
 
-  // Everything that is drawn at a position of the joints, in metres.
+  // Everything that is drawn at a position of the joints, in meters.
   function geometry(robot, q, axisLength) {
-    const found = kinematics.poses(robot, q);
-    const pose = (body) => (body < 0 ? kinematics.base : found[body]);
-    const center = (k) => kinematics.at(found[k], robot.com[k]);
+    const bodies = kinematics.poses(robot, q);
+    const pose = (body) => (body < 0 ? kinematics.base : bodies[body]);
+    const center = (k) => kinematics.at(bodies[k], robot.com[k]);
     return {
-      found,
+      bodies,
       sticks: robot.sticks.map((pair) => pair.map(([body, p]) => kinematics.at(pose(body), p))),
-      joints: found.map((own) => [own[3], own[7], own[11]]),
-      axes: found.map((own, k) => [-axisLength, axisLength].map((way) => (
+      joints: bodies.map((own) => [own[3], own[7], own[11]]),
+      axes: bodies.map((own, k) => [-axisLength, axisLength].map((way) => (
         kinematics.at(own, robot.axis[k].map((x) => x * way))))),
       // Out of the ball that may sit on the joint.
-      longAxes: found.map((own, k) => [-1, 1].map((way) => (kinematics.at(own,
+      longAxes: bodies.map((own, k) => [-1, 1].map((way) => (kinematics.at(own,
         robot.axis[k].map((x) => x * way * (2 * axisLength + 1.2 * robot.ball[k])))))),
-      centers: found.map((_, k) => center(k)),
-      balls: found.map((_, k) => ({ center: center(k),
+      centers: bodies.map((_, k) => center(k)),
+      balls: bodies.map((_, k) => ({ center: center(k),
         columns: [[robot.ball[k], 0, 0], [0, robot.ball[k], 0], [0, 0, robot.ball[k]]] })),
-      ellipsoids: found.map((own, k) => ({ center: center(k),
+      ellipsoids: bodies.map((own, k) => ({ center: center(k),
         columns: [0, 4, 8].map((row) => [0, 1, 2].map((column) => (
           own[row] * robot.ellipsoid[k][0][column]
           + own[row + 1] * robot.ellipsoid[k][1][column]
@@ -150,7 +150,7 @@ const arm = (() => {
         hoverinfo: 'text', text: `gravity ${digits(Math.hypot(...robot.gravity))} m/s²` },
     };
 
-    // What is shown: all that was seen, and no side much shorter than the others.
+    // The visible box: everything drawn so far, and no side much shorter than the others.
     function box() {
       const room = 0.05 * size();
       return seen.map(([low, high]) => {
