@@ -26,7 +26,7 @@ DEFAULT_SAMPLES = 4096
 DEFAULT_SEED = 1
 _MAX_SAMPLES = 10_000_000
 
-Source = str | bytes | os.PathLike
+Source = str | bytes | os.PathLike[str]
 Progress = Callable[[float, str], None]
 
 

@@ -200,6 +200,7 @@ def test_it_works_where_no_ros_is_installed():
             'mujoco',
             'matplotlib',
             'plotly',
+            'jinja2',
         ),
     )
     assert (answer.returncode, answer.stderr) == (0, '')
@@ -209,9 +210,13 @@ def test_it_works_where_no_ros_is_installed():
 def test_what_is_not_installed_is_named_with_what_to_type(tmp_path):
     answer = run(ARM7, '--samples', 10, code=refusing('rich'))
     assert answer.returncode == 2 and 'pip install rich; or use --json' in answer.stderr
-    assert run(ARM7, '--samples', 10, '--json', code=refusing('rich', 'plotly')).returncode == 0
-    answer = run(ARM7, '--samples', 10, '--html', tmp_path / 'p.html', code=refusing('plotly'))
-    assert answer.returncode == 2 and 'pip install jinja2 plotly' in answer.stderr
+    assert (
+        run(ARM7, '--samples', 10, '--json', code=refusing('rich', 'plotly', 'jinja2')).returncode
+        == 0
+    )
+    for package in ('plotly', 'jinja2'):
+        answer = run(ARM7, '--samples', 10, '--html', tmp_path / 'p.html', code=refusing(package))
+        assert answer.returncode == 2 and 'pip install jinja2 plotly' in answer.stderr
 
 
 def test_it_can_be_piped_into_head_and_into_a_file_of_another_encoding():

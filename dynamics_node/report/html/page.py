@@ -27,7 +27,7 @@ _SCRIPTS = ('kinematics.js', 'tables.js', 'plots.js', 'arm.js', 'start.js')
 _TABLE_SCRIPTS = ('tables.js', 'start.js')
 
 
-def write_html(report: Report, path: str | os.PathLike) -> None:
+def write_html(report: Report, path: str | os.PathLike[str]) -> None:
     """
     Write the report as one self-contained page.
 

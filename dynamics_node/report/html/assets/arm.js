@@ -1,4 +1,4 @@
-// The arm in three dimensions, with a slider for every joint and the gravity torque beside it.
+// The arm in 3D with a slider and the gravity torque for every joint.
 const arm = (() => {
   'use strict';
 
@@ -80,7 +80,7 @@ const arm = (() => {
     }
   };
 
-  // Everything that is drawn at a position of the joints, in meters.
+  // All shapes at a position of the joints, in meters.
   function geometry(robot, q, axisLength) {
     const bodies = kinematics.poses(robot, q);
     const pose = (body) => (body < 0 ? kinematics.base : bodies[body]);
@@ -91,7 +91,7 @@ const arm = (() => {
       joints: bodies.map((own) => [own[3], own[7], own[11]]),
       axes: bodies.map((own, k) => [-axisLength, axisLength].map((way) => (
         kinematics.at(own, robot.axis[k].map((x) => x * way))))),
-      // Out of the ball that may sit on the joint.
+      // Longer than the ball around the joint, if there is one.
       longAxes: bodies.map((own, k) => [-1, 1].map((way) => (kinematics.at(own,
         robot.axis[k].map((x) => x * way * (2 * axisLength + 1.2 * robot.ball[k])))))),
       centers: bodies.map((_, k) => center(k)),
@@ -105,7 +105,7 @@ const arm = (() => {
     };
   }
 
-  // Points that the picture must hold: the sticks and the corners around balls and shells.
+  // Points that must fit into the picture: the sticks and the corners around balls and shells.
   function outline(shape) {
     const corners = [...shape.balls, ...shape.ellipsoids].flatMap(({ center, columns }) => (
       [-1, 1].map((way) => center.map((x, i) => x + way * Math.hypot(...columns[i])))));
@@ -159,14 +159,14 @@ const arm = (() => {
       });
     }
 
-    // The longest side is 1, so that the camera sees a small and a long robot alike.
+    // The longest side is 1, so that robots of any size fill the view.
     function aspect(ends) {
       const sides = ends.map(([low, high]) => high - low);
       const [x, y, z] = sides.map((side) => side / Math.max(...sides));
       return { x, y, z };
     }
 
-    // An arrow at the edge of the picture, where no arm is in its way.
+    // An arrow at the edge of the picture, beside the arm.
     function gravityArrow(ends) {
       const strength = Math.hypot(...robot.gravity);
       const way = robot.gravity.map((x) => (strength > 0 ? 0.16 * size() * x / strength : 0));
@@ -305,7 +305,7 @@ const arm = (() => {
     const input = make('input', slide);
     input.type = 'range';
     input.setAttribute('aria-label', `position of ${name}`);
-    // Not before min and max: a slider rounds to its steps from min.
+    // The value is set after min and max, because a slider rounds it to steps from min.
     const [low, high] = [robot.lower[place], robot.upper[place]];
     Object.assign(input, { min: low, max: high, step: 'any' });
     const position = make('span', slide);
