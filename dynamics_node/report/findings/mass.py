@@ -252,44 +252,33 @@ def _suspicion(
     neighbors = [mass for mass in (before, *behind, body - entry.mass) if mass > 0.1 * entry.mass]
     if not neighbors:
         return None
+    weighs = f"link '{entry.name}' weighs {kilograms(entry.mass)}"
     if judges_moments and _has_moments_of_heavier(context, entry, body, neighbors):
-        radius = plain_number(radius_of_gyration(entry))
         return _Suspicion(
-            f"link '{entry.name}' weighs {kilograms(entry.mass)}, but its moments of inertia "
-            f'are those of a part of {radius} m radius (sqrt(I/m)) in a robot that reaches '
-            f'{plain_number(context.reach)} m; its neighbors weigh '
+            f'{weighs}, but its moments of inertia are those of a part of '
+            f'{plain_number(radius_of_gyration(entry))} m radius (sqrt(I/m)) in a robot that '
+            f'reaches {plain_number(context.reach)} m; its neighbors weigh '
             f'{kilograms(max(neighbors))}',
             neighbors,
         )
     if entry.mass < 0.5 * body:
         return None
-    if (
-        not behind
-        and _LIGHTER_AT_END * body < before
-        and entry.mass < _LIGHT_AT_END
-        and _is_plausible(1000.0 * entry.mass, neighbors)
-    ):
-        return _Suspicion(
-            f"link '{entry.name}' weighs {kilograms(entry.mass)}, "
-            f'{plain_number(before / body)} times less than the body that carries it',
-            neighbors,
-        )
-    load = context.mass_behind[carrier]
-    if (
-        entry.mass < _LIGHT
-        and behind
-        and before > 0.0
-        and (entry.has_shape or not context.has_shapes)
-        and _LIGHTER * body < min(before, max(behind))
-        and load > _LIGHTER * body
-    ):
-        return _Suspicion(
-            f"link '{entry.name}' weighs {kilograms(entry.mass)}, "
-            f'{plain_number(min(before, max(behind)) / body)} times less than the bodies before '
-            f'and behind it, and carries {kilograms(load)}',
-            neighbors,
-        )
-    return None
+    if not behind:
+        is_light = _LIGHTER_AT_END * body < before and entry.mass < _LIGHT_AT_END
+        if not (is_light and _is_plausible(1000.0 * entry.mass, neighbors)):
+            return None
+        ratio = plain_number(before / body)
+        return _Suspicion(f'{weighs}, {ratio} times less than the body that carries it', neighbors)
+    load, lightest = context.mass_behind[carrier], min(before, max(behind))
+    is_light = _LIGHTER * body < min(lightest, load) and entry.mass < _LIGHT
+    if not (is_light and (entry.has_shape or not context.has_shapes)):
+        return None
+    ratio = plain_number(lightest / body)
+    return _Suspicion(
+        f'{weighs}, {ratio} times less than the bodies before and behind it, and carries '
+        f'{kilograms(load)}',
+        neighbors,
+    )
 
 
 def _mass_before(context: FindingContext, carrier: str) -> float:

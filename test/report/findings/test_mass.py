@@ -129,7 +129,7 @@ def test_a_shape_without_mass_at_the_end_is_a_warning_with_what_it_could_weigh()
     assert f'would be {joint.gravity.magnitude + added:.3g} N m' in found.effect
 
 
-def test_a_shape_without_mass_in_the_middle_may_be_in_its_neighbour():
+def test_a_shape_without_mass_in_the_middle_may_be_in_its_neighbor():
     cover = (
         '<link name="cover"><visual><geometry><sphere radius="1"/></geometry></visual></link>'
         '<joint name="c" type="fixed"><parent link="link2"/><child link="cover"/></joint>'

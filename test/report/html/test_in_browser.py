@@ -142,7 +142,7 @@ def test_the_picture_is_not_blank_light_and_dark(tab, pages, tmp_path):
     assert shades['light'] > 0.9 and shades['dark'] < 0.2
 
 
-def test_a_plot_has_the_colours_of_dark_and_light(flat_tab, pages):
+def test_a_plot_has_the_colors_of_dark_and_light(flat_tab, pages):
     flat_tab.show(pages['arm7'])
     fills = {}
     for scheme in ('light', 'dark', 'light'):
