@@ -8,7 +8,8 @@ report       docs/report_page.png: the page of the model report of an arm with a
 benchmarks   docs/benchmarks_short.png: from docs/benchmarks.md, measures nothing
 
 Give names to draw only some. The first needs offscreen OpenGL: libegl1, or libosmesa6 and
-MUJOCO_GL=osmesa. The report needs chromium. The demo itself draws its own figure without.
+MUJOCO_GL=osmesa. The report needs chromium and chromium-driver. The demo itself draws its own
+figure without.
 
 """
 

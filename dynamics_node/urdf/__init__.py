@@ -10,11 +10,7 @@ from .description import Inertial, Joint, Link, Mimic, RobotDescription, Stated
 from .partial_read import PartialRead
 from .read import examine_urdf, read_urdf
 
-# The former name of `PartialRead`.
-Examination = PartialRead
-
 __all__ = [
-    'Examination',
     'Inertial',
     'Joint',
     'Link',

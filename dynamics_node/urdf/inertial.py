@@ -1,15 +1,9 @@
 """Checks of a link's inertial parameters: refused values and suspicious ones."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .description import Inertial
 from ..inertia.consistency import rounding_of, tensor_violations
-
-
-def link_pseudo_inertia(inertial: Inertial) -> NDArray[np.float64]:
-    """Return `inertial.pseudo_inertia`, shape (4, 4): kg m², kg m, kg."""
-    return inertial.pseudo_inertia
 
 
 def inertial_findings(
