@@ -7,7 +7,6 @@ from ...dynamics.friction import SMOOTHING_VELOCITY
 
 # ixx ixy ixz iyy iyz izz, as in geometry_msgs/Inertia, by row and column of the tensor.
 _TENSOR = ([0, 1, 2], [1, 3, 4], [2, 4, 5])
-PER_JOINT = ('rotor_inertia', 'friction.viscous', 'friction.coulomb')
 
 
 def tensor(six):
