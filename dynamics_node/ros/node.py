@@ -181,6 +181,7 @@ class DynamicsNode(Node):
     def on_state(self, stamp):
         """Publish what follows from a joint state besides the command, which has gone out."""
         robot, effort = self._shared.robot, self.path.gravity_torque
+        assert robot is not None  # without a robot there is no state
         if not all(map(math.isfinite, effort.tolist())):
             if self._not_finite.is_due():
                 self.logger.warning(
