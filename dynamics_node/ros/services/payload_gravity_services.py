@@ -86,7 +86,9 @@ class PayloadGravityServices(RobotServices):
         """Add the payload or the gravity in force to a response, also to a refusal."""
         if isinstance(response, SetPayload.Response):
             return self._with_payload(response)
-        return self._with_gravity(response)
+        if isinstance(response, SetGravity.Response):
+            return self._with_gravity(response)
+        return response
 
     def _set_payload(self, link, mass, com, six):
         values = {'link': link, 'mass': mass, 'com': com, 'inertia': six}
