@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
 from typing import Any
@@ -140,6 +140,37 @@ class Parameter:
     def _error(self, expected, value):
         text = repr(list(value)) if _is_list(value) else repr(value)
         return ParameterError(f'{self.name}: expected {expected}, got {text[:80]}')
+
+
+def check_each(
+    parameters: Sequence[Parameter], values: Mapping[str, Any]
+) -> tuple[dict[str, Any], list[str]]:
+    """
+    Check the value of every parameter by itself.
+
+    Parameters
+    ----------
+    parameters : sequence of Parameter
+    values : mapping of str to Any
+        Name → value from ROS; a missing name gets its default.
+
+    Returns
+    -------
+    checked : dict of str to Any
+        Name → value of its kind, without the wrong ones.
+    problems : list of str
+        One sentence per wrong value.
+
+    """
+    checked, problems = {}, []
+    for parameter in parameters:
+        try:
+            checked[parameter.name] = parameter.check(
+                values.get(parameter.name, parameter.default)
+            )
+        except ParameterError as error:
+            problems.append(str(error))
+    return checked, problems
 
 
 _TYPES = {

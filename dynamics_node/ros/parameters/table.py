@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import math
 from typing import Any
 
-from .declaration import DOUBLE, DOUBLES, FLAG, Parameter, ParameterError, TEXT, TEXTS
+from .declaration import check_each, DOUBLE, DOUBLES, FLAG, Parameter, ParameterError, TEXT, TEXTS
 from ...dynamics.friction import SMOOTHING_VELOCITY
 from ...safety.effort_output import STOP_BEHAVIORS
 
@@ -283,14 +283,7 @@ def check_all(values: Mapping[str, Any]) -> dict[str, Any]:
         Lists every problem, one sentence each.
 
     """
-    checked, problems = {}, []
-    for parameter in PARAMETERS:
-        try:
-            checked[parameter.name] = parameter.check(
-                values.get(parameter.name, parameter.default)
-            )
-        except ParameterError as error:
-            problems.append(str(error))
+    checked, problems = check_each(PARAMETERS, values)
     size = math.sqrt(sum(item * item for item in checked.get('gravity', ())))
     if size > MAX_GRAVITY:
         problems.append(f'gravity: expected at most {MAX_GRAVITY:g} m/s^2, got {size:.6g}')
