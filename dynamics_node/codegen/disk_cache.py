@@ -17,7 +17,8 @@ import tempfile
 
 import numpy as np
 
-from . import compile, trace
+from . import llvm_target, trace
+from ..kernels.packing import PackedModel
 
 _MAGIC = b'dynamics_node machine code 2\n'
 # The files that were not used for longest go beyond this: some 30 MB.
@@ -59,16 +60,14 @@ def folder():
     return (Path(base) if base else Path.home() / '.cache') / 'dynamics_node'
 
 
-def key(structure, numbers, any_inertia=False):
+def key(packed: PackedModel) -> str:
     """
     Return the name of a robot's machine code.
 
     Parameters
     ----------
-    structure, numbers : numpy.ndarray
-        See `packing.pack`; what is an input of the programs does not matter.
-    any_inertia : bool
-        See `quantities`.
+    packed : PackedModel
+        Numbers that are inputs of the programs do not matter.
 
     Returns
     -------
@@ -77,13 +76,13 @@ def key(structure, numbers, any_inertia=False):
 
     """
     digest = _SOURCES.copy()
-    digest.update(compile.description().encode())
-    digest.update(repr(structure.shape).encode())
-    digest.update(structure.tobytes())
-    constants = np.array(numbers)
-    for place in trace.input_places(len(structure), any_inertia):
+    digest.update(llvm_target.description().encode())
+    digest.update(repr(packed.structure.shape).encode())
+    digest.update(packed.structure.tobytes())
+    constants = np.array(packed.numbers)
+    for place in trace.input_places(packed):
         constants[place] = 0.0
-    digest.update(repr(any_inertia).encode())
+    digest.update(repr(packed.payload_variant).encode())
     digest.update(constants.tobytes())
     return digest.hexdigest()
 

@@ -18,14 +18,18 @@ The entry reads the arguments as numpy and CPython lay them out in memory (`PyAr
 
 """
 
+from collections.abc import Callable, Sequence
 import ctypes
 import functools
 import inspect
 import sys
 import sysconfig
+from types import MethodType
+from typing import Any
 import weakref
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .llvm_ir import Code
 from .sine import LARGEST_ANGLE
@@ -331,14 +335,22 @@ _SYMBOLS = (
 )
 
 
-def make_callable(code, name, shapes, fallback, documentation, terms_type, numbers):
+def make_callable(
+    address: int,
+    name: str,
+    shapes: Sequence[tuple[int, ...]],
+    fallback: MethodType,
+    documentation: str | None,
+    terms_type: type,
+    numbers: NDArray[np.float64],
+) -> Callable[..., Any]:
     """
     Return a builtin function that computes a quantity of one state.
 
     Parameters
     ----------
-    code : LoadedCode
-        With the entry of this quantity.
+    address : int
+        Of the entry of this quantity, which stays in memory.
     name : str
     shapes : sequence of tuple of int
         Of the outputs.
@@ -371,12 +383,9 @@ def make_callable(code, name, shapes, fallback, documentation, terms_type, numbe
     ]
     context = _Context([*(addresses[slot] for slot in _SLOTS), *kept])
     method = _MethodDefinition(
-        name.encode(),
-        code.address(f'{name}_call'),
-        _METHOD_FLAGS,
-        _text(name, fallback.__func__, documentation),
+        name.encode(), address, _METHOD_FLAGS, _text(name, fallback.__func__, documentation)
     )
-    context.owned = (code, method, fallback, terms_type, answers, numbers)
+    context.owned = (method, fallback, terms_type, answers, numbers)
     context.evaluation = fallback.__self__
     return _new_function()(ctypes.byref(method), context, 'dynamics_node')
 

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..kernels import recursive
+from ..kernels.packing import PackedModel
 
 
 class ProgramTooLongError(Exception):
@@ -280,43 +281,42 @@ class Quantity(NamedTuple):
         return [*self.positive, *(value for _, value in results)]
 
 
-def input_places(bodies, any_inertia):
+def input_places(packed: PackedModel) -> list[tuple[int, int]]:
     """
     Return which of a robot's numbers are inputs of its programs.
 
     Parameters
     ----------
-    bodies : int
-        N.
-    any_inertia : bool
-        Whether the inertia of bodies and rotors is among them.
+    packed : PackedModel
 
     Returns
     -------
     list of tuple of int
-        Row and column in the numbers of `packing.pack`.
+        Row and column in its numbers: gravity, and in the payload variant all inertia.
 
     """
-    places = [(bodies, column) for column in range(3)]
-    if any_inertia:
+    places = [(packed.body_count, column) for column in range(3)]
+    if packed.payload_variant:
         columns = [*range(recursive.INERTIA, recursive.MULTIPLIER), recursive.ROTOR]
-        places += [(row, column) for row in range(bodies) for column in columns]
+        places += [(row, column) for row in range(packed.body_count) for column in columns]
     return places
 
 
 class _Robot:
     # A robot in symbols: what the formulas of `recursive` take.
 
-    def __init__(self, structure, numbers, any_inertia):
+    def __init__(self, packed: PackedModel):
         self.program = Program(MOST_OPERATIONS)
-        self.structure = structure
-        self.n = recursive.joint_count(structure)
-        self.numbers = numbers.astype(object)
-        for row, column in input_places(len(structure), any_inertia):
+        self.structure = packed.structure
+        self.n = recursive.joint_count(packed.structure)
+        self.numbers = packed.numbers.astype(object)
+        for row, column in input_places(packed):
             self.numbers[row, column] = self.program.input(
                 'numbers', row * recursive.WIDTH + column
             )
-        self.work = tuple(array.astype(object) for array in recursive.workspace(len(structure)))
+        self.workspace = tuple(
+            array.astype(object) for array in recursive.make_workspace(packed.body_count)
+        )
 
     def inputs(self, name):
         return np.array([self.program.input(name, i) for i in range(self.n)], dtype=object)
@@ -325,79 +325,95 @@ class _Robot:
         return np.full(shape, 0.0, dtype=object)
 
 
-def dynamics(structure, numbers, any_inertia=False):
+def dynamics(packed: PackedModel) -> Quantity:
     """Record D, C and G."""
-    robot = _Robot(structure, numbers, any_inertia)
+    robot = _Robot(packed)
     D, C, G = robot.zeros(robot.n, robot.n), robot.zeros(robot.n, robot.n), robot.zeros(robot.n)
     recursive.dynamics_of_state(
-        structure, robot.numbers, robot.inputs('q'), robot.inputs('qd'), robot.work, D, C, G
+        robot.structure,
+        robot.numbers,
+        robot.inputs('q'),
+        robot.inputs('qd'),
+        robot.workspace,
+        D,
+        C,
+        G,
     )
     return Quantity('dynamics', robot.n, ('q', 'qd'), robot.program, (D, C, G))
 
 
-def mass_matrix(structure, numbers, any_inertia=False):
+def mass_matrix(packed: PackedModel) -> Quantity:
     """Record D."""
-    robot = _Robot(structure, numbers, any_inertia)
+    robot = _Robot(packed)
     D = robot.zeros(robot.n, robot.n)
-    recursive.mass_matrix_of_state(structure, robot.numbers, robot.inputs('q'), robot.work, D)
+    recursive.mass_matrix_of_state(
+        robot.structure, robot.numbers, robot.inputs('q'), robot.workspace, D
+    )
     return Quantity('mass_matrix', robot.n, ('q',), robot.program, (D,))
 
 
-def coriolis_matrix(structure, numbers, any_inertia=False):
+def coriolis_matrix(packed: PackedModel) -> Quantity:
     """Record C."""
-    quantity = dynamics(structure, numbers, any_inertia)
+    quantity = dynamics(packed)
     return quantity._replace(name='coriolis_matrix', outputs=quantity.outputs[1:2])
 
 
-def gravity_torque(structure, numbers, any_inertia=False):
+def gravity_torque(packed: PackedModel) -> Quantity:
     """Record G."""
-    robot = _Robot(structure, numbers, any_inertia)
+    robot = _Robot(packed)
     G = robot.zeros(robot.n)
-    recursive.gravity_of_state(structure, robot.numbers, robot.inputs('q'), robot.work, G)
+    recursive.gravity_of_state(
+        robot.structure, robot.numbers, robot.inputs('q'), robot.workspace, G
+    )
     return Quantity('gravity_torque', robot.n, ('q',), robot.program, (G,))
 
 
-def inverse_dynamics(structure, numbers, any_inertia=False):
+def inverse_dynamics(packed: PackedModel) -> Quantity:
     """Record the efforts of a motion."""
-    robot = _Robot(structure, numbers, any_inertia)
+    robot = _Robot(packed)
     tau = robot.zeros(robot.n)
     recursive.inverse_dynamics_of_state(
-        structure,
+        robot.structure,
         robot.numbers,
         robot.inputs('q'),
         robot.inputs('qd'),
         robot.inputs('qdd'),
-        robot.work,
+        robot.workspace,
         tau,
     )
     return Quantity('inverse_dynamics', robot.n, ('q', 'qd', 'qdd'), robot.program, (tau,))
 
 
-def forward_dynamics(structure, numbers, any_inertia=False):
+def forward_dynamics(packed: PackedModel) -> Quantity:
     """Record the accelerations that efforts cause, D q̈ = τ - (C q̇ + G)."""
-    robot = _Robot(structure, numbers, any_inertia)
+    robot = _Robot(packed)
     q, qd, tau = robot.inputs('q'), robot.inputs('qd'), robot.inputs('tau')
     D, qdd = robot.zeros(robot.n, robot.n), robot.zeros(robot.n)
-    pivots, margins = robot.zeros(robot.n), robot.zeros(robot.n)
+    pivots, pivot_margins = robot.zeros(robot.n), robot.zeros(robot.n)
     try:
         recursive.forward_dynamics_of_state(
-            structure,
+            robot.structure,
             robot.numbers,
             q,
             qd,
             tau,
             robot.zeros(robot.n),
-            robot.work,
+            robot.workspace,
             D,
             pivots,
-            margins,
+            pivot_margins,
             qdd,
         )
     except ZeroDivisionError:
         # A pivot is zero whatever the state: `positive` says that the result means nothing.
-        qdd, margins = robot.zeros(robot.n), robot.zeros(1)
+        qdd, pivot_margins = robot.zeros(robot.n), robot.zeros(1)
     return Quantity(
-        'forward_dynamics', robot.n, ('q', 'qd', 'tau'), robot.program, (qdd,), tuple(margins)
+        'forward_dynamics',
+        robot.n,
+        ('q', 'qd', 'tau'),
+        robot.program,
+        (qdd,),
+        tuple(pivot_margins),
     )
 
 

@@ -5,16 +5,15 @@ What may change here: argument checks, shapes, and quantities composed from D, C
 
 """
 
+from .batch import DynamicsTerms
 from .compensation import Compensation
 from .effort_limits import MaxPayload, over_limit, OverLimit
 from .friction import Friction
 from .joint_selection import JointSelection
-from .locked_joints import forward_dynamics_held
+from .locked_joints import forward_dynamics_locked
 from .momentum_observer import MomentumObserver
-from .one_off import one_off_model
 from .payload import Payload
-from .robot_model import RobotModel
-from .terms import DynamicsTerms
+from .robot_model import one_off_model, RobotModel
 from .trajectory import complete_trajectory, Trajectory
 
 __all__ = [
@@ -29,7 +28,7 @@ __all__ = [
     'RobotModel',
     'Trajectory',
     'complete_trajectory',
-    'forward_dynamics_held',
+    'forward_dynamics_locked',
     'one_off_model',
     'over_limit',
 ]

@@ -4,11 +4,10 @@ from concurrent.futures import ThreadPoolExecutor
 import math
 import operator
 import os
+from typing import NamedTuple
 
 import numpy as np
 
-from .terms import DynamicsTerms
-from ..codegen import are_ordinary
 from ..errors import ArgumentError, SingularMassMatrixError
 from ..kernels import recursive
 
@@ -18,6 +17,27 @@ from ..kernels import recursive
 _PIECE = 8192
 
 _FLOAT = np.dtype(np.float64)
+
+
+class DynamicsTerms(NamedTuple):
+    """
+    The three terms of D(q) q̈ + C(q, q̇) q̇ + G(q) = τ.
+
+    Attributes
+    ----------
+    mass_matrix : numpy.ndarray, shape (..., n, n)
+        D, kg m² / kg m / kg.
+    coriolis_matrix : numpy.ndarray, shape (..., n, n)
+        C of Christoffel symbols, effort unit per velocity unit.
+    gravity_torque : numpy.ndarray, shape (..., n)
+        G, N m or N.
+
+    """
+
+    mass_matrix: np.ndarray
+    coriolis_matrix: np.ndarray
+    gravity_torque: np.ndarray
+
 
 # The arrays of an answer for one state, by the number of joints.
 SHAPES = {
@@ -58,6 +78,7 @@ class Evaluation:
 
         """
         self.packed = packed
+        self._arrays = packed.structure, packed.numbers
         self.specialization = specialization
         self._joint_names = joint_names
         self._n = len(joint_names)
@@ -147,7 +168,7 @@ class Evaluation:
         if self.specialization.code is None:
             self.specialization.count(len(q))
         _in_pieces(
-            lambda arrays, outputs: recursive.forward_dynamics(*self.packed, *arrays, *outputs),
+            lambda arrays, outputs: recursive.forward_dynamics(*self._arrays, *arrays, *outputs),
             [q, qd, tau],
             [qdd, sound],
             len(q),
@@ -169,7 +190,7 @@ class Evaluation:
         """Return V with the batch axes of q."""
         lead, [q] = self.states(q=q)
         G, V = np.empty((len(q), self._n)), np.empty(len(q))
-        recursive.gravity_torque(*self.packed, q, G, V)
+        recursive.gravity_torque(*self._arrays, q, G, V)
         return V.reshape(lead)
 
     def jacobian(self, q, frame, point):
@@ -180,19 +201,19 @@ class Evaluation:
             raise ArgumentError(f'point: expected three numbers, m, got {point!r}')
         if frame.body >= 0:
             inside = frame.placement[:3, :3] @ _plain(point) + frame.placement[:3, 3]
-            recursive.jacobian(*self.packed, q, frame.body, inside, J)
+            recursive.jacobian(*self._arrays, q, frame.body, inside, J)
         return J.reshape(*lead, 6, self._n)
 
     def body_poses(self, q):
         """Return the transforms of all N bodies to the base, the batch axes of q first."""
         lead, [q] = self.states(q=q)
-        poses = self._body_poses(q, np.arange(len(self.packed[0])))
+        poses = self._body_poses(q, np.arange(self.packed.body_count))
         return poses.reshape(*lead, *poses.shape[1:])
 
     def _body_poses(self, q, bodies):
         poses = np.zeros((len(q), len(bodies), 4, 4))
         upper = np.empty((len(q), len(bodies), 3, 4))
-        recursive.body_poses(*self.packed, q, bodies, upper)
+        recursive.body_poses(*self._arrays, q, bodies, upper)
         poses[:, :, :3], poses[:, :, 3, 3] = upper, 1.0
         return poses
 
@@ -248,21 +269,19 @@ class Evaluation:
         if self.specialization.code is None:
             self.specialization.count(1)
         G = np.empty(self._n)
-        recursive.gravity_torque_of_one(*self.packed, q, G)
+        recursive.gravity_torque_of_one(*self._arrays, q, G)
         return G
 
     def _run_one(self, name, *state):
         if self.specialization.code is None:
             self.specialization.count(1)
         outputs = [np.empty(shape) for shape in self._one_shapes[name]]
-        _KERNELS[name](*self.packed, *[array[None] for array in state], *outputs)
+        _KERNELS[name](*self._arrays, *[array[None] for array in state], *outputs)
         return [output[0] for output in outputs]
 
     def _compute(self, code, name, arrays, outputs):
-        if code is not None and len(arrays[0]) >= code.lanes and are_ordinary(name, arrays):
-            code.batch(name, self.packed[1], arrays, outputs)
-        else:
-            _KERNELS[name](*self.packed, *arrays, *outputs)
+        if code is None or not code.compute_batch(name, self.packed.numbers, arrays, outputs):
+            _KERNELS[name](*self._arrays, *arrays, *outputs)
 
 
 def _gravity_torque(structure, numbers, q, G):

@@ -239,9 +239,8 @@ def _per_kilogram(model, body, position, states):
     inertia[body] = np.outer(position, position)  # (2) of a point mass of 1 kg
     q, qd, qdd = (_beside_carriage(value.reshape(-1, shape[-1])) for value in states)
     effort = np.empty_like(q)
-    recursive.inverse_dynamics(
-        *_on_carriage(*pack(tree, model.gravity, inertia)), q, qd, qdd, effort
-    )
+    packed = pack(tree, model.gravity, inertia)
+    recursive.inverse_dynamics(*_on_carriage(packed.structure, packed.numbers), q, qd, qdd, effort)
     # What pushes the carriage is the force that the kilogram needs, N.
     force = np.linalg.norm(effort[:, -3:], axis=1)
     effort = effort[:, :-3]

@@ -6,7 +6,7 @@ from ..errors import SingularMassMatrixError
 from ..kernels.recursive import solve_positive_definite
 
 
-def forward_dynamics_held(model, index, q, qd, tau):
+def forward_dynamics_locked(model, index, q, qd, tau):
     """
     Return the accelerations that efforts cause while the other joints are held where they are.
 

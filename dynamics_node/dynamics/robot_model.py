@@ -5,14 +5,12 @@ import inspect
 import numpy as np
 
 from .arguments import check_link, gravity_vector, per_joint
-from .batch import Evaluation, SHAPES
+from .batch import DynamicsTerms, Evaluation, SHAPES
 from .effort_limits import max_payload
 from .friction import make_friction, SMOOTHING_VELOCITY
 from .payload import loaded_inertia, make_payload
-from .terms import DynamicsTerms
 from .trajectory import complete_trajectory
-from ..codegen import make_callable
-from ..codegen.manager import Specialization
+from ..codegen import Specialization
 from ..errors import ArgumentError
 from ..kernels.packing import pack
 from ..model import build_tree
@@ -51,6 +49,7 @@ class RobotModel:
         payload=None,
         rotor_inertia=0.0,
         friction=None,
+        compile=True,
         specialization=None,
     ):
         """
@@ -67,8 +66,13 @@ class RobotModel:
             See `with_rotor_inertia`.
         friction : Friction, optional
             See `with_friction`; by default what the tree says.
+        compile : bool
+            False: never use machine code of this robot's own, neither from disk nor compiled.
+            For a model of short life loading it takes longer than it saves, and the general
+            kernel gives the same digits on every machine. Models derived from it (`with_payload`
+            and the like) do without too.
         specialization : Specialization, optional
-            That of another model of the same tree, without payload and rotor inertia.
+            Of another model of the same tree; it decides in place of `compile`.
 
         Raises
         ------
@@ -85,18 +89,19 @@ class RobotModel:
             tree.joint_names, tree.friction[:, 0], tree.friction[:, 1], SMOOTHING_VELOCITY
         )
         self._inertia = loaded_inertia(tree, payload)
-        self._specialization = specialization or Specialization(*pack(tree, self._gravity))
-        if self._inertia is not tree.inertia or self._rotor_inertia.any():
-            packed = pack(tree, self._gravity, self._inertia, self._rotor_inertia)
-            specialization = self._specialization.for_any_inertia
-        else:
-            packed = pack(tree, self._gravity)
-            specialization = self._specialization
+        packed = pack(tree, self._gravity, self._inertia, self._rotor_inertia)
+        if specialization is None:
+            # The first model of a robot usually carries nothing: then its numbers are the robot's.
+            own = pack(tree, self._gravity) if packed.payload_variant else packed
+            specialization = Specialization(own, compile)
+        self._specialization = specialization
+        if packed.payload_variant:
+            specialization = specialization.payload_variant
         self._evaluation = Evaluation(packed, tree.joint_names, specialization)
-        specialization.attach(self)
+        specialization.attach(self, _install)
 
     @classmethod
-    def from_urdf(cls, source, gravity=STANDARD_GRAVITY):
+    def from_urdf(cls, source, gravity=STANDARD_GRAVITY, *, compile=True):
         """
         Make the model of a URDF.
 
@@ -106,6 +111,8 @@ class RobotModel:
             A path or the URDF text itself. Meshes are never opened.
         gravity : array_like, shape (3,)
             Gravity acceleration in the root link's frame, m/s², points down.
+        compile : bool
+            False: never use machine code of this robot's own.
 
         Returns
         -------
@@ -119,7 +126,7 @@ class RobotModel:
             If gravity is not three finite numbers.
 
         """
-        return cls(build_tree(read_urdf(source)), gravity)
+        return cls(build_tree(read_urdf(source)), gravity, compile=compile)
 
     def __getstate__(self):
         # Machine code stays where it is: its addresses mean nothing in another process.
@@ -127,7 +134,7 @@ class RobotModel:
 
     def __setstate__(self, state):
         vars(self).update(state)
-        self._evaluation.specialization.attach(self)
+        self._evaluation.specialization.attach(self, _install)
 
     def __repr__(self):
         return (
@@ -346,7 +353,7 @@ class RobotModel:
         """Whether machine code of this robot's own is in use."""
         return self._evaluation.specialization.code is not None
 
-    def specialize(self, wait=True, loads=False):
+    def specialize(self, wait=True, with_payload_code=False):
         """
         Ask for machine code of this robot's own, without waiting until it is used often.
 
@@ -355,7 +362,7 @@ class RobotModel:
         wait : bool
             True: return when it is in use, after some seconds if it was never compiled on this
             machine. False: return at once, and have another process compile it.
-        loads : bool
+        with_payload_code : bool
             True: ask for the machine code that serves this robot under every payload and rotor
             inertia too, so that the first of them finds it. A robot has it beside its own,
             because its own, which knows that many numbers are zero, is faster.
@@ -371,30 +378,9 @@ class RobotModel:
         """
         specialization = self._evaluation.specialization
         if wait:
-            return specialization.wait(loads)
-        specialization.begin(loads)
+            return specialization.wait(with_payload_code)
+        specialization.begin(with_payload_code)
         return self.is_specialized
-
-    def _use(self, code):
-        # Machine code takes the place of methods. What it does not take, it hands to the
-        # evaluation, not to the method: a function that refers to its model would never be freed.
-        for name, shapes in SHAPES.items():
-            # A method of a subclass, or that somebody has put in its place, stays.
-            if getattr(type(self), name) is getattr(RobotModel, name) and name not in vars(self):
-                fallback = getattr(self._evaluation, name)
-                setattr(
-                    self,
-                    name,
-                    make_callable(
-                        code.loaded,
-                        name,
-                        shapes(self._n),
-                        fallback,
-                        getattr(RobotModel, name).__doc__,
-                        DynamicsTerms,
-                        self._evaluation.packed[1],
-                    ),
-                )
 
     def mass_matrix(self, q, *, out=None, threads=None):
         """
@@ -839,3 +825,27 @@ class RobotModel:
             rest if qdd is None else qdd,
             self.effort_limits if effort_limits is None else effort_limits,
         )
+
+
+def _install(model, code):
+    # Machine code takes the place of methods. Arguments that it does not cover go to the
+    # evaluation, not to the method: a function that refers to its model would never be freed.
+    evaluation = model._evaluation
+    for name, shapes in SHAPES.items():
+        method = getattr(RobotModel, name)
+        # Methods of a subclass, and functions assigned to the instance, stay.
+        if getattr(type(model), name) is method and name not in vars(model):
+            function = code.python_entry(
+                name,
+                shapes(len(model.joint_names)),
+                getattr(evaluation, name),
+                method.__doc__,
+                DynamicsTerms,
+                evaluation.packed.numbers,
+            )
+            setattr(model, name, function)
+
+
+def one_off_model(tree, gravity=STANDARD_GRAVITY):
+    """Return `RobotModel(tree, gravity, compile=False)`."""
+    return RobotModel(tree, gravity, compile=False)

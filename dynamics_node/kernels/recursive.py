@@ -28,7 +28,7 @@ import numpy as np
 from .jit import compiled, formula
 
 # Columns of `structure`, one row per body: see `packing`.
-PARENT, KIND, COORDINATE = range(3)
+PARENT, JOINT_TYPE, Q_INDEX = range(3)
 
 # Columns of `numbers`, one row per body. ROTATION is row-major; INERTIA holds the ten numbers
 # of J: mass, first moments (3), second moments xx, xy, xz, yy, yz, zz. ROTOR is on the diagonal of
@@ -52,7 +52,7 @@ _EPSILON = 2.0**-52
 
 def joint_count(structure):
     """Return the number of independent joints of a robot, n."""
-    return int(structure[:, COORDINATE].max()) + 1
+    return int(structure[:, Q_INDEX].max()) + 1
 
 
 # For every robot, B states at once ---------------------------------------------------------
@@ -75,10 +75,10 @@ def dynamics(structure, numbers, q, qd, D, C, G):
         Overwritten.
 
     """
-    work = workspace(structure.shape[0])
+    workspace = make_workspace(structure.shape[0])
     D[:], C[:], G[:] = 0.0, 0.0, 0.0
     for b in range(q.shape[0]):
-        dynamics_of_state(structure, numbers, q[b], qd[b], work, D[b], C[b], G[b])
+        dynamics_of_state(structure, numbers, q[b], qd[b], workspace, D[b], C[b], G[b])
 
 
 @compiled
@@ -95,10 +95,10 @@ def mass_matrix(structure, numbers, q, D):
         Overwritten.
 
     """
-    work = workspace(structure.shape[0])
+    workspace = make_workspace(structure.shape[0])
     D[:] = 0.0
     for b in range(q.shape[0]):
-        mass_matrix_of_state(structure, numbers, q[b], work, D[b])
+        mass_matrix_of_state(structure, numbers, q[b], workspace, D[b])
 
 
 @compiled
@@ -117,10 +117,10 @@ def gravity_torque(structure, numbers, q, G, V):
         Overwritten.
 
     """
-    work = workspace(structure.shape[0])
+    workspace = make_workspace(structure.shape[0])
     G[:] = 0.0
     for b in range(q.shape[0]):
-        V[b] = gravity_of_state(structure, numbers, q[b], work, G[b])
+        V[b] = gravity_of_state(structure, numbers, q[b], workspace, G[b])
 
 
 @compiled
@@ -138,7 +138,7 @@ def gravity_torque_of_one(structure, numbers, q, G):
 
     """
     G[:] = 0.0
-    gravity_of_state(structure, numbers, q, workspace(structure.shape[0]), G)
+    gravity_of_state(structure, numbers, q, make_workspace(structure.shape[0]), G)
 
 
 @compiled
@@ -156,14 +156,14 @@ def inverse_dynamics(structure, numbers, q, qd, qdd, tau):
         Overwritten.
 
     """
-    work = workspace(structure.shape[0])
+    workspace = make_workspace(structure.shape[0])
     tau[:] = 0.0
     for b in range(q.shape[0]):
-        inverse_dynamics_of_state(structure, numbers, q[b], qd[b], qdd[b], work, tau[b])
+        inverse_dynamics_of_state(structure, numbers, q[b], qd[b], qdd[b], workspace, tau[b])
 
 
 @compiled
-def forward_dynamics(structure, numbers, q, qd, tau, qdd, sound):
+def forward_dynamics(structure, numbers, q, qd, tau, qdd, is_definite):
     """
     Compute the accelerations that the efforts of B states cause.
 
@@ -175,18 +175,18 @@ def forward_dynamics(structure, numbers, q, qd, tau, qdd, sound):
         Joint positions (rad or m), velocities, efforts.
     qdd : numpy.ndarray, shape (B, n)
         Overwritten.
-    sound : numpy.ndarray of bool, shape (B,)
+    is_definite : numpy.ndarray of bool, shape (B,)
         Overwritten: False where D is not positive definite beyond rounding, so qdd means nothing.
 
     """
-    work, n = workspace(structure.shape[0]), q.shape[1]
-    D, pivots, margins, rest = np.empty((n, n)), np.empty(n), np.empty(n), np.zeros(n)
+    workspace, n = make_workspace(structure.shape[0]), q.shape[1]
+    D, pivots, pivot_margins, zeros = np.empty((n, n)), np.empty(n), np.empty(n), np.zeros(n)
     for b in range(q.shape[0]):
         D[:], qdd[b] = 0.0, 0.0
-        forward_dynamics_of_state(structure, numbers, q[b], qd[b], tau[b], rest, work, D, pivots,
-                                  margins, qdd[b])
+        forward_dynamics_of_state(structure, numbers, q[b], qd[b], tau[b], zeros, workspace, D,
+                                  pivots, pivot_margins, qdd[b])
         # Written so that NaN passes, and comes out as NaN.
-        sound[b] = not (margins <= 0.0).any()
+        is_definite[b] = not (pivot_margins <= 0.0).any()
 
 
 @compiled
@@ -207,10 +207,10 @@ def jacobian(structure, numbers, q, body, point, J):
         Overwritten.
 
     """
-    work = workspace(structure.shape[0])
+    workspace = make_workspace(structure.shape[0])
     J[:] = 0.0
     for b in range(q.shape[0]):
-        jacobian_of_state(structure, numbers, q[b], work, body, point, J[b])
+        jacobian_of_state(structure, numbers, q[b], workspace, body, point, J[b])
 
 
 @compiled
@@ -229,7 +229,7 @@ def body_poses(structure, numbers, q, bodies, A):
         Overwritten: the upper three rows of the transforms body → base, m.
 
     """
-    pose, twist, composite = workspace(structure.shape[0])[:3]
+    pose, twist, composite = make_workspace(structure.shape[0])[:3]
     for b in range(q.shape[0]):
         outward(structure, numbers, q[b], pose, twist, composite)
         for k in range(len(bodies)):
@@ -243,36 +243,36 @@ def body_poses(structure, numbers, q, bodies, A):
 
 
 @formula
-def workspace(bodies):
-    """Return what the functions of one state need to work in: one array per quantity."""
+def make_workspace(bodies):
+    """Return uninitialized intermediate arrays of one state, one per quantity of N bodies."""
     return (np.empty((bodies, POSE)), np.empty((bodies, TWIST)), np.empty((bodies, COMPOSITE)),
             np.empty((bodies, TWIST)), np.empty((bodies, TWIST)), np.empty((bodies, MOMENTUM)))
 
 
 @formula
-def dynamics_of_state(structure, numbers, q, qd, work, D, C, G):
+def dynamics_of_state(structure, numbers, q, qd, workspace, D, C, G):
     """Add D, C and G of one state to zeros, equations (15) to (17)."""
-    pose, twist, composite, velocity, twist_rate, momentum = work
+    pose, twist, composite, velocity, twist_rate, momentum = workspace
     outward(structure, numbers, q, pose, twist, composite)
     outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate)
-    momenta(structure, velocity, composite, momentum)
+    body_momenta(structure, velocity, composite, momentum)
     inward_dynamics(structure, numbers, pose, twist, velocity, twist_rate, composite, momentum,
                     D, C)
     gravity_torques(structure, numbers, twist, composite, G)
 
 
 @formula
-def mass_matrix_of_state(structure, numbers, q, work, D):
+def mass_matrix_of_state(structure, numbers, q, workspace, D):
     """Add D of one state to zeros, equation (15)."""
-    pose, twist, composite = work[:3]
+    pose, twist, composite = workspace[:3]
     outward(structure, numbers, q, pose, twist, composite)
     inward_mass(structure, numbers, pose, twist, composite, D)
 
 
 @formula
-def gravity_of_state(structure, numbers, q, work, G):
+def gravity_of_state(structure, numbers, q, workspace, G):
     """Add G of one state to zeros, equation (17), and return V, equation (20)."""
-    pose, twist, composite = work[:3]
+    pose, twist, composite = workspace[:3]
     outward(structure, numbers, q, pose, twist, composite)
     inward_composites(structure, pose, composite)
     gravity_torques(structure, numbers, twist, composite, G)
@@ -280,9 +280,9 @@ def gravity_of_state(structure, numbers, q, work, G):
 
 
 @formula
-def inverse_dynamics_of_state(structure, numbers, q, qd, qdd, work, tau):
+def inverse_dynamics_of_state(structure, numbers, q, qd, qdd, workspace, tau):
     """Add the efforts of one motion to zeros, equation (22)."""
-    pose, twist, K, velocity, twist_rate, scratch = work
+    pose, twist, K, velocity, twist_rate, scratch = workspace
     acceleration, wrench = scratch[:, :TWIST], scratch[:, TWIST:]
     outward(structure, numbers, q, pose, twist, K)
     outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate)
@@ -290,31 +290,31 @@ def inverse_dynamics_of_state(structure, numbers, q, qd, qdd, work, tau):
                          acceleration)
     inward_efforts(structure, numbers, pose, twist, velocity, acceleration, K, wrench, tau)
     for k in range(structure.shape[0]):
-        c = structure[k, COORDINATE]
+        c = structure[k, Q_INDEX]
         tau[c] += numbers[k, ROTOR] * qdd[c]                                     # (28)
 
 
 @formula
-def forward_dynamics_of_state(structure, numbers, q, qd, tau, rest, work, D, pivots, margins,
-                              qdd):
-    """Solve equation (25); `rest` are zeros, D and qdd are before."""
-    inverse_dynamics_of_state(structure, numbers, q, qd, rest, work, qdd)
+def forward_dynamics_of_state(structure, numbers, q, qd, tau, zeros, workspace, D, pivots,
+                              pivot_margins, qdd):
+    """Solve equation (25); `zeros` are zeros, D and qdd are before."""
+    inverse_dynamics_of_state(structure, numbers, q, qd, zeros, workspace, qdd)
     for i in range(qdd.shape[0]):
         qdd[i] = tau[i] - qdd[i]
-    mass_matrix_of_state(structure, numbers, q, work, D)
-    solve_positive_definite(D, qdd, pivots, margins)
+    mass_matrix_of_state(structure, numbers, q, workspace, D)
+    solve_positive_definite(D, qdd, pivots, pivot_margins)
 
 
 @formula
-def jacobian_of_state(structure, numbers, q, work, body, point, J):
+def jacobian_of_state(structure, numbers, q, workspace, body, point, J):
     """Add the Jacobian of a point of a body to zeros, equation (29)."""
-    pose, twist, composite = work[:3]
+    pose, twist, composite = workspace[:3]
     outward(structure, numbers, q, pose, twist, composite)
     # From the joint's own origin to the point, as in (21): no digits are lost far from the base.
     r = _times(_matrix(pose, body, OF_ROTATION), (point[0], point[1], point[2]))
     k = body
     while k >= 0:
-        c, multiplier = structure[k, COORDINATE], numbers[k, MULTIPLIER]         # (19)
+        c, multiplier = structure[k, Q_INDEX], numbers[k, MULTIPLIER]         # (19)
         w, v = _vector(twist, k, 0), _vector(twist, k, 3)
         linear = _add(_cross(w, r), v)
         for i in range(3):
@@ -325,7 +325,7 @@ def jacobian_of_state(structure, numbers, q, work, body, point, J):
 
 
 @formula
-def solve_positive_definite(D, x, pivots, margins):
+def solve_positive_definite(D, x, pivots, pivot_margins):
     """
     Solve D x = b in place by Cholesky without square roots, D = L diag(pivots) Lᵀ.
 
@@ -335,18 +335,18 @@ def solve_positive_definite(D, x, pivots, margins):
         L below the diagonal afterwards.
     x : numpy.ndarray, shape (n,)
         b before.
-    pivots, margins : numpy.ndarray, shape (n,)
-        Overwritten. The margins are what is left of the pivots beyond rounding: all positive if
-        D is positive definite.
+    pivots, pivot_margins : numpy.ndarray, shape (n,)
+        Overwritten. The margins are the pivots minus their rounding: all positive if D is
+        positive definite.
 
     """
     n = x.shape[0]
     for j in range(n):
         pivots[j] = D[j, j]
-        margins[j] = -n * _EPSILON * D[j, j]
+        pivot_margins[j] = -n * _EPSILON * D[j, j]
         for k in range(j):
             pivots[j] = pivots[j] - D[j, k] * D[j, k] * pivots[k]
-        margins[j] = pivots[j] + margins[j]
+        pivot_margins[j] = pivots[j] + pivot_margins[j]
         inverse = 1.0 / pivots[j]
         for i in range(j + 1, n):
             for k in range(j):
@@ -382,8 +382,8 @@ def outward(structure, numbers, q, pose, twist, composite):
 
     """
     for k in range(structure.shape[0]):
-        parent, prismatic = structure[k, PARENT], structure[k, KIND] == _PRISMATIC
-        position = numbers[k, MULTIPLIER] * q[structure[k, COORDINATE]] + numbers[k, OFFSET]
+        parent, prismatic = structure[k, PARENT], structure[k, JOINT_TYPE] == _PRISMATIC
+        position = numbers[k, MULTIPLIER] * q[structure[k, Q_INDEX]] + numbers[k, OFFSET]
         axis = _vector(numbers, k, AXIS)
         R, offset = _matrix(numbers, k, ROTATION), _vector(numbers, k, TRANSLATION)
         if not prismatic:
@@ -462,7 +462,7 @@ def outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate):
     """
     for k in range(structure.shape[0]):
         parent = structure[k, PARENT]
-        speed = numbers[k, MULTIPLIER] * qd[structure[k, COORDINATE]]
+        speed = numbers[k, MULTIPLIER] * qd[structure[k, Q_INDEX]]
         w, v = _vector(twist, k, 0), _vector(twist, k, 3)
         W, U = _scale(speed, w), _scale(speed, v)
         if parent >= 0:
@@ -476,7 +476,7 @@ def outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate):
 
 
 @formula
-def momenta(structure, velocity, K, momentum):
+def body_momenta(structure, velocity, K, momentum):
     """
     Compute V_k K_k of every body, the summand of (13), relative to the joint's origin.
 
@@ -570,16 +570,16 @@ def inward_mass(structure, numbers, pose, twist, Jc, D):
         if structure[j, PARENT] >= 0:
             _add_composite(pose, Jc, j, structure[j, PARENT])
         torque, force = _force(Jc, j, _vector(twist, j, 0), _vector(twist, j, 3))
-        cj, mj = structure[j, COORDINATE], numbers[j, MULTIPLIER]
+        cj, mj = structure[j, Q_INDEX], numbers[j, MULTIPLIER]
         D[cj, cj] += numbers[j, ROTOR]                                           # (28)
         i = j
         while i >= 0:
-            ci, scale = structure[i, COORDINATE], numbers[i, MULTIPLIER] * mj    # (19)
-            entry = scale * _trace(twist, i, torque, force)                      # (15)
+            ci, scale = structure[i, Q_INDEX], numbers[i, MULTIPLIER] * mj    # (19)
+            entry = scale * _pair(twist, i, torque, force)                      # (15)
             D[ci, cj] += entry
             if i != j:
                 D[cj, ci] += entry
-            torque = _moved(pose, i, torque, force)
+            torque = _shift_to_parent(pose, i, torque, force)
             i = structure[i, PARENT]
 
 
@@ -614,20 +614,20 @@ def inward_dynamics(structure, numbers, pose, twist, velocity, twist_rate, Jc, L
         torque2 = _add(torque2, _subtract(trace_w, _times(L, w)))
         force2 = _add(force2, _cross(w, l))
         mirrored = _add(_subtract(trace_w, _times(_transposed(L), w)), _cross(l, v))
-        cj, mj = structure[j, COORDINATE], numbers[j, MULTIPLIER]
+        cj, mj = structure[j, Q_INDEX], numbers[j, MULTIPLIER]
         D[cj, cj] += numbers[j, ROTOR]                                           # (28)
         i = j
         while i >= 0:
-            ci, scale = structure[i, COORDINATE], numbers[i, MULTIPLIER] * mj    # (19)
-            entry = scale * _trace(twist, i, torque, force)                      # (15)
+            ci, scale = structure[i, Q_INDEX], numbers[i, MULTIPLIER] * mj    # (19)
+            entry = scale * _pair(twist, i, torque, force)                      # (15)
             D[ci, cj] += entry
-            C[ci, cj] += scale * _trace(twist, i, torque2, force2)               # (16), i above j
+            C[ci, cj] += scale * _pair(twist, i, torque2, force2)               # (16), i above j
             if i != j:
                 D[cj, ci] += entry
-                C[cj, ci] += scale * (_trace(twist_rate, i, torque, force)       # (16), i below j:
+                C[cj, ci] += scale * (_pair(twist_rate, i, torque, force)       # (16), i below j:
                                       + _dot(_vector(twist, i, 0), mirrored))    # swapped names
-            torque = _moved(pose, i, torque, force)
-            torque2 = _moved(pose, i, torque2, force2)
+            torque = _shift_to_parent(pose, i, torque, force)
+            torque2 = _shift_to_parent(pose, i, torque2, force2)
             # xi Lcᵀ relative to the parent's origin: (24) and axial(f Uᵀ) = U x f.
             mirrored = _add(mirrored, _cross(_vector(velocity, i, 3), force))
             i = structure[i, PARENT]
@@ -651,13 +651,13 @@ def _axial(sigma, w):
 
 
 @formula
-def _trace(twist, i, torque, force):
+def _pair(twist, i, torque, force):
     # (18): tr(B xiᵀ) = w · axial(B) + v · b.
     return _dot(_vector(twist, i, 0), torque) + _dot(_vector(twist, i, 3), force)
 
 
 @formula
-def _moved(pose, i, torque, force):
+def _shift_to_parent(pose, i, torque, force):
     # (21), from joint i to its parent: the axial part gains d x (last column).
     return _add(torque, _cross(_vector(pose, i, OF_OFFSET), force))
 
@@ -681,7 +681,7 @@ def gravity_torques(structure, numbers, twist, Jc, G):
     for k in range(structure.shape[0]):
         column = _add(_cross(_vector(twist, k, 0), _vector(Jc, k, 1)),
                       _scale(Jc[k, 0], _vector(twist, k, 3)))
-        G[structure[k, COORDINATE]] -= numbers[k, MULTIPLIER] * _dot(gravity, column)
+        G[structure[k, Q_INDEX]] -= numbers[k, MULTIPLIER] * _dot(gravity, column)
 
 
 @formula
@@ -731,8 +731,8 @@ def outward_acceleration(structure, numbers, qd, qdd, pose, twist, velocity, twi
     """
     for k in range(structure.shape[0]):
         parent, multiplier = structure[k, PARENT], numbers[k, MULTIPLIER]
-        speed = multiplier * qd[structure[k, COORDINATE]]
-        change = multiplier * qdd[structure[k, COORDINATE]]
+        speed = multiplier * qd[structure[k, Q_INDEX]]
+        change = multiplier * qdd[structure[k, Q_INDEX]]
         # (23), the joint's own part: xi q'' + rate of xi q', and once more the rate for a slide,
         # because the body turns under it.
         a = _add(_scale(change, _vector(twist, k, 0)), _scale(speed, _vector(twist_rate, k, 0)))
@@ -777,10 +777,10 @@ def inward_efforts(structure, numbers, pose, twist, velocity, acceleration, K, w
                                 _scale(K[k, 0], c)))
     for j in range(structure.shape[0] - 1, -1, -1):
         torque, force = _vector(wrench, j, 0), _vector(wrench, j, 3)
-        effort = numbers[j, MULTIPLIER] * _trace(twist, j, torque, force)
-        tau[structure[j, COORDINATE]] += effort
+        effort = numbers[j, MULTIPLIER] * _pair(twist, j, torque, force)
+        tau[structure[j, Q_INDEX]] += effort
         if structure[j, PARENT] >= 0:
-            _accumulate(wrench, structure[j, PARENT], 0, _moved(pose, j, torque, force))
+            _accumulate(wrench, structure[j, PARENT], 0, _shift_to_parent(pose, j, torque, force))
             _accumulate(wrench, structure[j, PARENT], 3, force)
 
 

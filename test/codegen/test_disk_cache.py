@@ -1,5 +1,6 @@
 """Machine code on disk: found again, never trusted blindly."""
 
+from dataclasses import replace
 import os
 import stat
 
@@ -158,24 +159,25 @@ def test_the_users_cache_folder_is_the_usual_one(monkeypatch):
 
 def test_the_key_knows_the_robot_but_not_gravity():
     arm, pendulum = (RobotModel.from_urdf(path).tree for path in (ARM7, PENDULUM))
-    key = disk_cache.key(*pack(arm, (0.0, 0.0, -9.81)))
-    assert key == disk_cache.key(*pack(arm, (1.0, 2.0, 3.0)))
-    assert key != disk_cache.key(*pack(pendulum, (0.0, 0.0, -9.81)))
+    key = disk_cache.key(pack(arm, (0.0, 0.0, -9.81)))
+    assert key == disk_cache.key(pack(arm, (1.0, 2.0, 3.0)))
+    assert key != disk_cache.key(pack(pendulum, (0.0, 0.0, -9.81)))
     heavier = RobotModel.from_urdf(ARM7.read_text().replace('mass value="', 'mass value="1')).tree
-    assert key != disk_cache.key(*pack(heavier, (0.0, 0.0, -9.81)))
+    assert key != disk_cache.key(pack(heavier, (0.0, 0.0, -9.81)))
 
 
 def test_the_key_for_any_inertia_knows_neither_inertia_nor_rotors_but_all_else():
     arm = RobotModel.from_urdf(ARM7)
-    structure, numbers = pack(arm.tree, arm.gravity)
-    key = disk_cache.key(structure, numbers, True)
-    assert key != disk_cache.key(structure, numbers)
+    own = pack(arm.tree, arm.gravity)
+    variant = own.with_payload_code()
+    key = disk_cache.key(variant)
+    assert key != disk_cache.key(own)
     for column in range(recursive.WIDTH):
-        other = numbers.copy()
+        other = own.numbers.copy()
         other[3, column] += 1.0
         is_input = recursive.INERTIA <= column < recursive.MULTIPLIER or column == recursive.ROTOR
-        assert (disk_cache.key(structure, other, True) == key) == is_input
-        assert disk_cache.key(structure, other) != disk_cache.key(structure, numbers)
-    tree = structure.copy()
-    tree[-1] += 1
-    assert disk_cache.key(tree, numbers, True) != key
+        assert (disk_cache.key(replace(variant, numbers=other)) == key) == is_input
+        assert disk_cache.key(replace(own, numbers=other)) != disk_cache.key(own)
+    structure = own.structure.copy()
+    structure[-1] += 1
+    assert disk_cache.key(replace(variant, structure=structure)) != key

@@ -14,7 +14,7 @@ import threading
 import time
 import weakref
 
-from dynamics_node import codegen, RobotModel, SingularMassMatrixError
+from dynamics_node import RobotModel, SingularMassMatrixError
 from dynamics_node.codegen import compile, worker
 from dynamics_node.codegen.manager import Specialization
 from dynamics_node.dynamics.batch import Evaluation
@@ -40,7 +40,7 @@ def compiled(tmp_path_factory):
     place = tmp_path_factory.mktemp('compiled')
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('DYNAMICS_NODE_CACHE_DIR', str(place))
-        assert RobotModel.from_urdf(SMALL).specialize(loads=True)
+        assert RobotModel.from_urdf(SMALL).specialize(with_payload_code=True)
     return place
 
 
@@ -108,11 +108,11 @@ def test_it_can_be_asked_for_without_waiting():
 
 
 def test_while_enough_others_are_being_made_it_is_asked_for_again(monkeypatch):
-    monkeypatch.setattr(worker, '_MOST_AT_ONCE', 0)
+    monkeypatch.setattr(worker, '_MAX_PROCESSES', 0)
     model = RobotModel.from_urdf(PENDULUM)
     model.specialize(wait=False)
     assert model._evaluation.specialization._process is None
-    monkeypatch.setattr(worker, '_MOST_AT_ONCE', 1)
+    monkeypatch.setattr(worker, '_MAX_PROCESSES', 1)
     end = time.monotonic() + 60
     while not model.is_specialized and time.monotonic() < end:
         model.gravity_torque([0.3])
@@ -157,12 +157,14 @@ def test_what_somebody_put_in_the_place_of_a_method_stays():
     np.testing.assert_array_equal(model.gravity_torque(np.array([0.3])), [0.0])
 
 
-@pytest.mark.parametrize('step', ['from_disk', 'make', 'start'])
-def test_whatever_fails_the_general_kernel_goes_on(step, monkeypatch, caplog):
+@pytest.mark.parametrize(
+    'module, step', [(compile, 'from_disk'), (compile, 'make'), (worker, 'start')]
+)
+def test_whatever_fails_the_general_kernel_goes_on(module, step, monkeypatch, caplog):
     def fail(*arguments):
         raise OSError('as it happens')
 
-    monkeypatch.setattr(codegen, step, fail)
+    monkeypatch.setattr(module, step, fail)
     model = RobotModel.from_urdf(PENDULUM)
     assert not model.specialize(wait=step != 'start')
     assert np.isfinite(model.gravity_torque([0.3])).all()
@@ -170,14 +172,12 @@ def test_whatever_fails_the_general_kernel_goes_on(step, monkeypatch, caplog):
 
 
 def test_a_failing_hand_out_does_not_reach_the_caller(caplog):
-    class Refusing:
-        def _use(self, code):
-            raise AttributeError('no')
+    def refuse(owner, code):
+        raise AttributeError('no')
 
-    model, refusing = RobotModel.from_urdf(PENDULUM), Refusing()
+    model = RobotModel.from_urdf(PENDULUM)
     assert model.specialize()
-    specialization = Specialization(*model._evaluation.packed)
-    specialization.attach(refusing)
+    Specialization(model._evaluation.packed).attach(model, refuse)
     assert 'the general kernel goes on: AttributeError' in caplog.text
 
 
@@ -271,7 +271,7 @@ def assert_as_the_general_kernel(model, rng):
     general = Evaluation(
         model._evaluation.packed,
         model.joint_names,
-        Specialization(np.empty((0, 3), dtype=np.int64), np.zeros((1, 28))),
+        Specialization(model._evaluation.packed, compile=False),
     )
     states = rng.uniform(-2.0, 2.0, (3, 9, len(model.joint_names)))
     batch = (
@@ -344,7 +344,7 @@ def test_models_that_carried_something_before_it_was_ready_get_it_too():
 def test_that_for_payloads_can_be_asked_for_before_one_comes():
     model = RobotModel.from_urdf(PENDULUM)
     q = np.zeros(1)
-    model.specialize(wait=False, loads=True)
+    model.specialize(wait=False, with_payload_code=True)
     assert begun() == 1
     used_until_specialized(model)
     # One after the other.
@@ -363,7 +363,7 @@ def test_that_for_payloads_can_be_asked_for_before_one_comes():
     assert model.with_payload('rod', 2.0).is_specialized
     assert begun() == 2
     again = RobotModel.from_urdf(PENDULUM)
-    assert again.specialize(loads=True)
+    assert again.specialize(with_payload_code=True)
     np.testing.assert_array_equal(
         again.with_payload('rod', 1.0).mass_matrix(q), loaded.mass_matrix(q)
     )
@@ -371,16 +371,16 @@ def test_that_for_payloads_can_be_asked_for_before_one_comes():
 
 def test_a_new_model_does_not_wait_while_machine_code_is_loaded(small, monkeypatch):
     begun_to_load, may_end = threading.Event(), threading.Event()
-    right = codegen.from_disk
+    right = compile.from_disk
 
-    def slow(*packed):
+    def slow(packed):
         begun_to_load.set()
         assert may_end.wait(60.0)
-        return right(*packed)
+        return right(packed)
 
-    specialization = small._specialization.for_any_inertia
+    specialization = small._specialization.payload_variant
     specialization.code = None
-    monkeypatch.setattr(codegen, 'from_disk', slow)
+    monkeypatch.setattr(compile, 'from_disk', slow)
     thread = threading.Thread(target=specialization._take)
     thread.start()
     try:
@@ -395,9 +395,9 @@ def test_a_new_model_does_not_wait_while_machine_code_is_loaded(small, monkeypat
 
 def test_both_can_be_waited_for():
     model = RobotModel.from_urdf(PENDULUM)
-    assert model.with_payload('rod', 1.0).specialize(loads=True)
+    assert model.with_payload('rod', 1.0).specialize(with_payload_code=True)
     assert not model.is_specialized
-    assert model.specialize(loads=True)
+    assert model.specialize(with_payload_code=True)
     assert model.with_rotor_inertia(1.0).is_specialized
     assert begun() == 0
 
@@ -493,7 +493,7 @@ def test_a_thousand_payloads_leave_nothing_behind(small):
         assert last() is None
     finally:
         gc.enable()
-    assert len(model._specialization.for_any_inertia._models) == 0
+    assert len(model._specialization.payload_variant._owners) == 0
     assert (begun(), len(compile._loaded)) == (processes, codes)
     # A model and its entries take some 10 kB: a thousand would be 10 MB.
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4_000
@@ -530,7 +530,7 @@ def test_a_loaded_model_can_be_pickled(ready, request):
     assert other.is_specialized == ready
     q = np.full(len(model.joint_names), 0.3)
     np.testing.assert_array_equal(other.mass_matrix(q), loaded.mass_matrix(q))
-    assert other._specialization.for_any_inertia is other._evaluation.specialization
+    assert other._specialization.payload_variant is other._evaluation.specialization
     assert with_random_payload(other, rng).specialize()
     assert other.is_specialized
     assert_as_the_general_kernel(other, rng)

@@ -275,7 +275,7 @@ def test_a_function_keeps_the_payload_that_it_was_made_with(model, arguments):
     del carrying
     gc.collect()
     # Memory that was freed would be taken by these.
-    garbage = [np.full(model._evaluation.packed[1].shape, np.nan) for _ in range(100)]
+    garbage = [np.full(model._evaluation.packed.numbers.shape, np.nan) for _ in range(100)]
     for function, wanted in zip(functions, expected, strict=True):
         np.testing.assert_allclose(
             function(arguments[0]), wanted, rtol=0, atol=1e-12 * np.abs(wanted).max()

@@ -1,5 +1,6 @@
 """Straight-line programs compute what the general kernel does."""
 
+from dataclasses import replace
 import math
 
 from dynamics_node import RobotModel
@@ -17,7 +18,7 @@ from support.robots import ARM7, PENDULUM, random_state, random_urdf
 
 def evaluate(quantity, model, **inputs):
     results = [value for output in quantity.outputs for value in output.flat]
-    numbers = model._evaluation.packed[1].ravel()
+    numbers = model._evaluation.packed.numbers.ravel()
     values = iter(run(quantity.program, results, numbers=numbers, **inputs))
     return [
         np.array([next(values) for _ in output.flat]).reshape(output.shape)
@@ -36,19 +37,19 @@ def hold_against_the_general_kernel(model, rng, recorded_from=None):
     qdd = rng.normal(size=q.size)
     packed = model._evaluation.packed
     if recorded_from is not None:
-        packed = *recorded_from._evaluation.packed, True
+        packed = recorded_from._evaluation.packed.with_payload_code()
     D, C, G = model._evaluation.dynamics(q, qd)
     tau = model._evaluation.inverse_dynamics(q, qd, qdd)
     for actual, expected in zip(
-        evaluate(trace.dynamics(*packed), model, q=q, qd=qd), (D, C, G), strict=True
+        evaluate(trace.dynamics(packed), model, q=q, qd=qd), (D, C, G), strict=True
     ):
         assert_close(actual, expected)
-    assert_close(evaluate(trace.mass_matrix(*packed), model, q=q)[0], D)
-    assert_close(evaluate(trace.coriolis_matrix(*packed), model, q=q, qd=qd)[0], C)
-    assert_close(evaluate(trace.gravity_torque(*packed), model, q=q)[0], G)
-    assert_close(evaluate(trace.inverse_dynamics(*packed), model, q=q, qd=qd, qdd=qdd)[0], tau)
+    assert_close(evaluate(trace.mass_matrix(packed), model, q=q)[0], D)
+    assert_close(evaluate(trace.coriolis_matrix(packed), model, q=q, qd=qd)[0], C)
+    assert_close(evaluate(trace.gravity_torque(packed), model, q=q)[0], G)
+    assert_close(evaluate(trace.inverse_dynamics(packed), model, q=q, qd=qd, qdd=qdd)[0], tau)
     # What comes back is as exact as D is well-conditioned.
-    back = evaluate(trace.forward_dynamics(*packed), model, q=q, qd=qd, tau=tau)[0]
+    back = evaluate(trace.forward_dynamics(packed), model, q=q, qd=qd, tau=tau)[0]
     np.testing.assert_allclose(D @ back, D @ qdd, rtol=0, atol=1e-11 * np.abs(tau).max())
 
 
@@ -81,7 +82,7 @@ def test_every_quantity_on_our_robots(path):
 
 def test_the_signatures_are_those_of_the_programs():
     model = RobotModel.from_urdf(PENDULUM)
-    recorded = [record(*pack(model.tree, model.gravity)) for record in trace.ALL]
+    recorded = [record(pack(model.tree, model.gravity)) for record in trace.ALL]
     assert {
         quantity.name: (quantity.inputs, len(quantity.outputs)) for quantity in recorded
     } == trace.SIGNATURES
@@ -91,18 +92,18 @@ def test_a_straight_line_is_shorter_than_the_loops():
     # A vertical first axis, zero offsets and right angles: an arm with none of them needs
     # about 6000 operations.
     model = RobotModel.from_urdf(ARM7)
-    assert trace.dynamics(*pack(model.tree, model.gravity)).operation_count < 4500
+    assert trace.dynamics(pack(model.tree, model.gravity)).operation_count < 4500
 
 
 def test_for_any_inertia_no_number_of_the_recorded_robot_is_left():
     model = RobotModel.from_urdf(ARM7)
-    structure, numbers = pack(model.tree, model.gravity)
-    other = numbers.copy()
-    for place in trace.input_places(len(structure), True):
+    packed = pack(model.tree, model.gravity).with_payload_code()
+    other = packed.numbers.copy()
+    for place in trace.input_places(packed):
         other[place] = np.nan
-    assert np.isnan(other).sum() == 3 + 11 * len(structure)
+    assert np.isnan(other).sum() == 3 + 11 * packed.body_count
     for record in trace.ALL:
-        programs = [record(structure, values, True).program for values in (numbers, other)]
+        programs = [record(each).program for each in (packed, replace(packed, numbers=other))]
         assert repr([operation.name for operation in programs[0].operations]) == repr(
             [operation.name for operation in programs[1].operations]
         )
@@ -116,7 +117,7 @@ def test_for_any_inertia_no_number_of_the_recorded_robot_is_left():
 def test_robots_with_very_many_joints_are_not_recorded():
     model = RobotModel.from_urdf(random_urdf(3, joints=80, with_mimic=False))
     with pytest.raises(ProgramTooLongError):
-        trace.dynamics(*pack(model.tree, model.gravity))
+        trace.dynamics(pack(model.tree, model.gravity))
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """A model that is looked at once."""
 
-from dynamics_node import codegen, RobotModel
+from dynamics_node import RobotModel
+from dynamics_node.codegen import worker
 from dynamics_node.dynamics import one_off_model
 from dynamics_node.model import build_tree
 from dynamics_node.urdf import read_urdf
@@ -10,7 +11,7 @@ from support.robots import random_urdf
 
 def test_it_computes_the_same_and_starts_no_compiler(monkeypatch):
     started = []
-    monkeypatch.setattr(codegen, 'start', lambda *packed: started.append(packed))
+    monkeypatch.setattr(worker, 'start', lambda packed: started.append(packed))
     text = random_urdf(4711, joints=4)
     model = one_off_model(build_tree(read_urdf(text)), (0.0, 1.0, -9.0))
     q = np.random.default_rng(1).normal(size=(30_000, len(model.joint_names)))

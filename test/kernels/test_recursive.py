@@ -1,4 +1,4 @@
-"""The closed form is the textbook: element by element, compiled and interpreted."""
+"""The recursion is the textbook: element by element, compiled and interpreted."""
 
 import os
 import subprocess

@@ -9,17 +9,16 @@ ALL_THAT_COMPUTES = """
 import numpy as np
 from dynamics_node import RobotModel, complete_trajectory
 from dynamics_node.kernels import recursive, warm_up
-from dynamics_node.codegen import are_ordinary
 
 def compiled():
     return {name: len(kernel.signatures) for name, kernel in vars(recursive).items()
-            if hasattr(kernel, 'signatures')} | {'are_ordinary': 0}
+            if hasattr(kernel, 'signatures')}
 
 warm_up.warm_up()
 before = compiled()
 assert before['dynamics'] == before['gravity_torque'] == before['body_poses'] == 1, before
 robot = RobotModel.from_urdf('config/robots/arm7.urdf')
-robot.specialize(loads=True)
+robot.specialize(with_payload_code=True)
 still = np.zeros(8)
 still.flags.writeable = False
 many = np.broadcast_to(still, (5, 8))

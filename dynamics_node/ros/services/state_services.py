@@ -15,7 +15,7 @@ import numpy as np
 from .base import Answering
 from .query import finite, Query
 from ..support.callback_errors import guarded_service
-from ...dynamics import forward_dynamics_held
+from ...dynamics import forward_dynamics_locked
 from ...errors import ArgumentError
 
 
@@ -110,7 +110,7 @@ class DynamicsServices(Answering):
                 query.message += ', with friction'
             response.effort = query.part(given)
             response.acceleration = query.part(
-                forward_dynamics_held(model, query.index, query.q, query.qd, effort)
+                forward_dynamics_locked(model, query.index, query.q, query.qd, effort)
             )
 
         return self._answer(request, response, fill)
