@@ -1,4 +1,4 @@
-"""The processor of this machine: its description, LLVM code compiled for it, object files loaded."""
+"""This machine's processor: its description, compilation for it, loading of object files."""
 
 from collections.abc import Iterable
 import functools

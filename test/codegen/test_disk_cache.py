@@ -77,7 +77,7 @@ def test_a_folder_that_others_may_write_counts_as_empty(folder):
 
 
 def test_in_a_folder_that_others_may_write_nothing_changes(folder, monkeypatch):
-    monkeypatch.setattr(disk_cache, '_MOST_FILES', 1)
+    monkeypatch.setattr(disk_cache, '_MAX_FILES', 1)
     folder.mkdir()
     folder.chmod(0o777)
     for number in range(3):
@@ -106,7 +106,7 @@ def test_a_link_that_somebody_else_has_set_is_not_followed(folder, tmp_path, mon
 
 
 def test_the_oldest_files_go(folder, monkeypatch):
-    monkeypatch.setattr(disk_cache, '_MOST_FILES', 3)
+    monkeypatch.setattr(disk_cache, '_MAX_FILES', 3)
     names = [f'{number:064x}' for number in range(5)]
     for number, name in enumerate(names):
         disk_cache.save(name, CODE)
@@ -115,7 +115,7 @@ def test_the_oldest_files_go(folder, monkeypatch):
 
 
 def test_files_that_are_not_ours_stay(folder, monkeypatch):
-    monkeypatch.setattr(disk_cache, '_MOST_FILES', 1)
+    monkeypatch.setattr(disk_cache, '_MAX_FILES', 1)
     folder.mkdir(mode=0o700)
     for name in ('thesis.tex', 'photo.jpg', 'name'):
         (folder / name).write_text('mine')
