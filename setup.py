@@ -17,7 +17,7 @@ setup(
     version='0.1.0',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
     # What the page of the model report is made of: styles, scripts, parts of its markup.
-    package_data={f'{package_name}.report.html': ['assets/*']},
+    package_data={package_name: ['py.typed'], f'{package_name}.report.html': ['assets/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),

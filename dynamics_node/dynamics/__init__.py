@@ -1,5 +1,8 @@
 """
-The library's face: checked arrays and words in, kernels underneath.
+The public library: checked arguments, errors in words, kernels underneath.
+
+`robot_model` is the API page, `batch` chooses between kernel and machine code; the other modules
+compose quantities from D, C and G.
 
 What may change here: argument checks, shapes, and quantities composed from D, C and G.
 

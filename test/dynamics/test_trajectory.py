@@ -373,7 +373,10 @@ NAN, INF = float('nan'), float('inf')
             ([0, 1], [1.0, 2.0]),
             r'positions: expected shape \(2, n\), one row per time, got \(2,\)',
         ),
-        (([0, 1], [[1.0], [1.0, 2.0]]), 'positions: expected numbers, as many for each point'),
+        (
+            ([0, 1], [[1.0], [1.0, 2.0]]),
+            'positions: expected numbers, the same number for each point',
+        ),
         (([0, 1], [['a'], ['b']]), 'positions: expected numbers'),
         (([0, NAN], [[1.0], [2.0]]), 'time: point 1: expected a finite number, got nan'),
         (
