@@ -20,7 +20,7 @@ def model(request):
 
 
 @pytest.mark.parametrize('lanes', sorted({2, 4, llvm_target.lanes()}))
-def test_a_batch_of_any_size_is_the_general_kernels(model, lanes):
+def test_a_batch_of_any_size_agrees_with_the_general_kernel(model, lanes):
     packed = pack(model.tree, model.gravity)
     quantity = trace.dynamics(packed)
     text = '\n'.join([*declarations(lanes), llvm_ir.batch_function(quantity, lanes)])
@@ -31,7 +31,7 @@ def test_a_batch_of_any_size_is_the_general_kernels(model, lanes):
     n, rng = len(model.joint_names), np.random.default_rng(2)
     for count in (lanes, lanes + 1, 2 * lanes - 1, 2 * lanes, 5 * lanes + 3):
         q, qd = rng.uniform(-3.0, 3.0, (2, count, n))
-        # A state more than asked for: nobody may write there.
+        # One more state than requested, which must not be written.
         outputs = [np.full((count + 1, *shape), 7.0) for shape in ((n, n), (n, n), (n,))]
         arrays = [q, qd, packed.numbers, *outputs]
         function(*(array.ctypes.data for array in arrays), count)

@@ -1,4 +1,4 @@
-"""Another process compiles, once per robot, and leaves the machine code on disk."""
+"""The worker process: one per robot, with its result on disk."""
 
 from pathlib import Path
 import sys
@@ -25,7 +25,7 @@ def packed(text):
     return pack(model.tree, model.gravity)
 
 
-def test_the_code_is_on_disk_when_it_ends(folder):
+def test_the_worker_leaves_the_code_on_disk(folder):
     robot = packed(PENDULUM)
     process = worker.start(robot)
     assert worker.start(robot) is process
@@ -33,7 +33,7 @@ def test_the_code_is_on_disk_when_it_ends(folder):
     assert [path.name for path in folder.iterdir()] == [disk_cache.key(robot)]
 
 
-def test_that_for_any_inertia_is_another(folder):
+def test_the_payload_variant_is_compiled_separately(folder):
     robot = packed(PENDULUM)
     process = worker.start(robot.with_payload_code())
     assert worker.start(robot.with_payload_code()) is process
@@ -46,19 +46,19 @@ def test_that_for_any_inertia_is_another(folder):
     }
 
 
-def test_it_says_when_there_is_none(folder):
+def test_the_worker_fails_for_a_robot_that_is_too_large(folder):
     process = worker.start(packed(random_urdf(3, joints=60, with_mimic=False)))
     assert process.wait(60.0) == 1
     assert list(folder.iterdir()) == []
 
 
-def test_a_place_that_cannot_be_written_gives_none(folder, monkeypatch):
+def test_without_a_writable_folder_the_worker_fails(folder, monkeypatch):
     (folder / 'file').write_text('')
     monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(folder / 'file' / 'cache'))
     assert worker.start(packed(PENDULUM)).wait(60.0) == 1
 
 
-def test_a_flood_of_robots_does_not_become_a_flood_of_processes(monkeypatch):
+def test_the_number_of_compiler_processes_is_limited(monkeypatch):
     monkeypatch.setattr(worker, '_MAX_PROCESSES', 1)
     robot, other = packed(PENDULUM), packed(random_urdf(1, joints=2))
     process = worker.start(robot)
@@ -69,8 +69,8 @@ def test_a_flood_of_robots_does_not_become_a_flood_of_processes(monkeypatch):
 
 
 @needs_machine_code
-def test_nothing_that_lies_in_the_current_folder_runs(tmp_path_factory, monkeypatch):
-    current = tmp_path_factory.mktemp('somebody_elses')
+def test_the_worker_runs_no_file_of_the_current_folder(tmp_path_factory, monkeypatch):
+    current = tmp_path_factory.mktemp('current')
     (current / 'numpy.py').write_text('open("ran", "w")')
     monkeypatch.chdir(current)
     assert worker.start(packed(PENDULUM)).wait(60.0) == 0

@@ -1,4 +1,4 @@
-"""Forward dynamics of some joints, the others held, against closed form and Pinocchio."""
+"""Forward dynamics with locked joints, against Pinocchio."""
 
 from dynamics_node import RobotModel, SingularMassMatrixError
 from dynamics_node.dynamics import forward_dynamics_locked
@@ -9,7 +9,7 @@ from support.robots import random_state, random_urdf
 
 
 @pytest.mark.parametrize('seed', range(5))
-def test_held_joints_do_not_accelerate_whatever_the_others_do(seed):
+def test_locked_joints_do_not_accelerate(seed):
     text = random_urdf(seed)
     model = RobotModel.from_urdf(text)
     rng = np.random.default_rng(seed)
@@ -24,7 +24,7 @@ def test_held_joints_do_not_accelerate_whatever_the_others_do(seed):
     assert judged[index] == pytest.approx(tau[index], abs=1e-10 * np.abs(judged).max())
 
 
-def test_all_joints_free_is_the_model_itself():
+def test_without_locked_joints_it_equals_forward_dynamics():
     model = RobotModel.from_urdf(random_urdf(2))
     q, qd = random_state(np.random.default_rng(2), model)
     every = np.arange(q.size)
@@ -33,7 +33,7 @@ def test_all_joints_free_is_the_model_itself():
     )
 
 
-def test_a_free_joint_that_moves_no_mass_is_refused():
+def test_a_free_joint_without_inertia_is_refused():
     text = (
         '<robot name="r"><link name="w"/><link name="a"/><link name="b"/>'
         '<joint name="j" type="continuous"><parent link="w"/><child link="a"/></joint>'
