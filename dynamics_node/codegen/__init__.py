@@ -15,7 +15,8 @@ What may change here: how the formulas become machine code, never the formulas.
 
 """
 
+from .compile import RobotCode
 from .manager import Specialization
 from .python_entry import is_supported
 
-__all__ = ['Specialization', 'is_supported']
+__all__ = ['RobotCode', 'Specialization', 'is_supported']

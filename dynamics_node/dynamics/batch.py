@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..codegen import Specialization
+from ..codegen import RobotCode, Specialization
 from ..errors import ArgumentError, SingularMassMatrixError
 from ..kernels import recursive
 from ..kernels.packing import PackedModel
@@ -305,7 +305,7 @@ class Evaluation:
         _KERNELS[name](*self._arrays, *[array[None] for array in state], *outputs)
         return [output[0] for output in outputs]
 
-    def _compute(self, code: Any, name: str, arrays: Arrays, outputs: Arrays) -> None:
+    def _compute(self, code: RobotCode | None, name: str, arrays: Arrays, outputs: Arrays) -> None:
         if code is None or not code.compute_batch(name, self.packed.numbers, arrays, outputs):
             _KERNELS[name](*self._arrays, *arrays, *outputs)
 

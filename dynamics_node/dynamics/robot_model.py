@@ -15,7 +15,7 @@ from .effort_limits import max_payload, MaxPayload
 from .friction import Friction, make_friction, SMOOTHING_VELOCITY
 from .payload import loaded_inertia, make_payload, Payload
 from .trajectory import complete_trajectory
-from ..codegen import Specialization
+from ..codegen import RobotCode, Specialization
 from ..errors import ArgumentError
 from ..kernels.packing import pack
 from ..model import build_tree
@@ -883,7 +883,7 @@ class RobotModel:
         )
 
 
-def _install(model: RobotModel, code: Any) -> None:
+def _install(model: RobotModel, code: RobotCode) -> None:
     # Machine code replaces methods of the instance. Arguments that it does not cover go to the
     # evaluation, not to the method: a function that refers to its model would never be freed.
     evaluation = model._evaluation

@@ -256,6 +256,9 @@ def body_poses(structure: Structure, numbers: Array, q: Array, bodies: NDArray[n
 
 
 # One state ---------------------------------------------------------------------------------
+#
+# Shapes: q, qd, qdd, tau and G (n,); D and C (n, n); J (6, n). Results are added to their
+# arguments, so that joints that mimic one joint add up, equation (19).
 
 
 @formula
@@ -430,8 +433,8 @@ def outward(structure: Structure, numbers: Array, q: Array, pose: Array, twist: 
 
 @formula
 def _turn(a: Vector, s: Scalar, c: Scalar) -> Matrix:
-    # Rodrigues' rotation about the unit vector a, s and c the sine and cosine of the angle:
-    # E = a aᵀ + c (1 - a aᵀ) + s [a]×
+    # Rotation of A_k about the unit vector a, with sine s and cosine c of the angle (Rodrigues):
+    # E = a aᵀ + c (1 - a aᵀ) + s [a]×, as in `textbook`
     x, y, z = a
     xy, xz, yz = x * y, x * z, y * z
     return (x * x + c * (1.0 - x * x), xy - c * xy - s * z, xz - c * xz + s * y,
