@@ -129,7 +129,7 @@ class DynamicsNode(Node):
         if self.parameters['machine_code']:
             # In another process; the general kernel answers meanwhile. For payloads too: when
             # one comes, the arm may float, and nothing should be started then.
-            robot.model.specialize(wait=False, loads=True)
+            robot.model.specialize(wait=False, with_payload_code=True)
         is_first = self._shared.robot is None
         self._shared.robot = robot
         self.path.use(robot.buffer)

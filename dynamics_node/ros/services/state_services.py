@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from .base import RobotServices, state_service
 from .query import finite, Query
-from ...dynamics import forward_dynamics_held
+from ...dynamics import forward_dynamics_locked
 from ...errors import ArgumentError
 
 
@@ -76,7 +76,7 @@ class StateServices(RobotServices):
             query.message += ', with friction'
         response.effort = query.part(given)
         response.acceleration = query.part(
-            forward_dynamics_held(model, query.index, query.q, query.qd, effort)
+            forward_dynamics_locked(model, query.index, query.q, query.qd, effort)
         )
 
     @state_service(GetJacobian)
