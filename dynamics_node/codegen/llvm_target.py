@@ -17,7 +17,7 @@ def _host() -> tuple[str, llvm.FeatureMap]:
 
 
 def description() -> str:
-    """Return what machine code depends on: versions of LLVM, processor and its features."""
+    """Return the dependencies of machine code: versions of LLVM, processor and its features."""
     name, features = _host()
     version = '.'.join(map(str, llvm.llvm_version_info))
     return f'llvmlite {llvmlite.__version__} LLVM {version} {name} {features.flatten()}'

@@ -315,7 +315,7 @@ def test_a_second_payload_starts_no_compiler():
         assert_as_the_general_kernel(other, rng)
         used_until_specialized(other)
     assert compiler_count() == 1
-    # Nor does a robot that differs in nothing but its inertia.
+    # A robot that differs only in its inertia starts none either.
     heavier = RobotModel.from_urdf(SMALL.replace('mass value="', 'mass value="1'))
     assert not heavier.is_specialized
     assert with_random_payload(heavier, rng).is_specialized
@@ -434,7 +434,7 @@ def test_removing_a_payload_restores_every_bit(small):
 
 
 def test_a_massless_link_can_carry_a_payload():
-    # The tip weighs nothing, so D is singular, whatever the state: until it carries something.
+    # The tip is massless, so D is singular in every state, until it carries a payload.
     text = random_urdf(12, joints=2, with_mimic=False).replace(
         '</robot>',
         """

@@ -1,4 +1,4 @@
-"""Straight-line programs compute what the general kernel does."""
+"""Straight-line programs agree with the general kernel."""
 
 from dataclasses import replace
 import math

@@ -120,7 +120,7 @@ def test_threads_are_a_number_of_at_least_one(model, threads, count):
 
 
 def test_a_singular_mass_matrix_is_refused_for_states_and_batches():
-    # Two joints about one axis with nothing between them: only their sum moves inertia.
+    # Two joints about one axis with a massless link between them: only their sum moves inertia.
     text = random_urdf(5, joints=1, with_mimic=False, prismatic=0.0).replace(
         '</robot>',
         """

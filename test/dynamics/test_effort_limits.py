@@ -103,7 +103,7 @@ def test_a_pendulum_carries_the_remaining_torque(pendulum, angle):
 
 
 def test_payload_of_a_tilted_pendulum_follows_gravity(pendulum):
-    # Mounted on a wall so that g lies along the axis: nothing pulls. Turned by 30 degrees about
+    # Mounted on a wall, with g along the axis: no torque. Turned by 30 degrees about
     # the axis: as if the pendulum were elsewhere.
     wall = pendulum.with_gravity((0.0, G, 0.0)).max_payload([0.3], 'rod')
     assert (wall.mass, wall.joint) == (INF, -1)
@@ -134,7 +134,7 @@ def test_speeding_up_a_mast_takes_its_torque(lift):
 
 
 def test_velocities_reduce_the_payload():
-    # A slide on a turning mast holds what flies outwards: (M x + m X) w².
+    # A slide on a turning mast holds the centrifugal force (M x + m X) w².
     slide = RobotModel.from_urdf(
         LIFT.replace(
             '<axis xyz="0 0 1"/>\n<limit lower="0"', '<axis xyz="1 0 0"/>\n<limit lower="0"'

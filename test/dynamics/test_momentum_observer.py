@@ -122,7 +122,7 @@ def test_it_finds_a_push_in_a_mujoco_simulation():
     text = free_arm('arm7')
     model = RobotModel.from_urdf(text).with_friction(VISCOUS, 0.0)
     motion = simulate(model, text)
-    # A state at the begin of the push: what happens between two states is taken for constant.
+    # A state at the begin of the push: efforts count as constant between two states.
     begin = int(np.argmax(np.abs(motion.external).max(axis=1) > 0.0))
     chosen = np.cumsum(np.random.default_rng(2).integers(2, 9, 1300))
     errors = []
@@ -250,7 +250,7 @@ def test_the_longest_step_may_be_chosen():
 
 @pytest.mark.parametrize('is_pushed', [True, False], ids=['pushed', 'not pushed'])
 def test_a_change_of_model_neither_adds_nor_hides_external_effort(is_pushed):
-    # What it carries is known from the middle on; what it knew before was another payload.
+    # The model has a wrong payload at first and the right one from the middle on.
     plain, motion = laden()
     right = plain.with_payload('hand', **LOAD).with_friction(*FRICTION).with_rotor_inertia(ROTORS)
     effort = motion.effort - (5.0 if is_pushed else 0.0)
@@ -309,7 +309,7 @@ def test_a_nonfinite_state_restarts_the_observer(carriage, state):
 
 
 def test_a_nonfinite_estimate_restarts_the_observer(carriage):
-    # The momentum is a number; what changes it within a nanosecond is none.
+    # The momentum is finite; its rate over a nanosecond overflows.
     assert np.isnan(carriage.update(0.1 + 1e-9, [0.0], [1e300], [0.0])).all()
     assert np.isfinite(carriage.estimate).all() and carriage.observed == 0.0
     assert carriage.update(0.11, [0.0], [0.0], [0.0]) == 0.0

@@ -24,12 +24,12 @@ COMPARED = [name for name in NAMES if name not in LEFT_OUT]
 # base frame, loses the digits of light links far from the base.
 PINOCCHIO_LOSES = {('tiago_description/robots/tiago_no_hand.urdf', 'C')}
 
-# Efforts cause no definite acceleration where a joint moves nothing that has inertia.
+# Accelerations are undefined where a joint moves no inertia.
 SINGULAR = {'romeo_description/urdf/romeo.urdf': ('LHand', 'RHand')}
 
 
 def quantities(name):
-    """Return what is compared on a robot: all, but for forward dynamics where D is singular."""
+    """Return the quantities to compare: all, without forward dynamics where D is singular."""
     return {quantity for quantity in QUANTITIES if quantity != 'FD' or name not in SINGULAR}
 
 

@@ -288,7 +288,7 @@ def test_arrays_of_the_caller_are_not_kept():
 
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(1, 12), joints=st.integers(0, 3))
 def test_any_pattern_of_gaps_reproduces_a_parabola(seed, count, joints):
-    # A parabola is its own spline, whatever is missing: but its data must fix it, so three
+    # A parabola is its own spline for any missing values: but its data must fix it, so three
     # points, or some velocity.
     rng = np.random.default_rng(seed)
     time = rng.normal() + np.cumsum(rng.uniform(0.1, 1.0, count))

@@ -88,12 +88,12 @@ before = compiled()
 assert before['dynamics'] == before['gravity_torque'] == before['body_poses'] == 1, before
 robot = RobotModel.from_urdf('config/robots/arm7.urdf')
 robot.specialize(with_payload_code=True)
-still = np.zeros(8)
-still.flags.writeable = False
-many = np.broadcast_to(still, (5, 8))
+zeros = np.zeros(8)
+zeros.flags.writeable = False
+many = np.broadcast_to(zeros, (5, 8))
 for model in (robot, robot.with_payload('hand', 1.0).with_rotor_inertia(0.1),
               robot.with_gravity((0.0, 9.81, 0.0))):
-    for q in (still, many, np.zeros((8, 5)).T, [0] * 8, np.zeros(8, dtype=np.float32)):
+    for q in (zeros, many, np.zeros((8, 5)).T, [0] * 8, np.zeros(8, dtype=np.float32)):
         model.dynamics(q, q)
         model.mass_matrix(q)
         model.coriolis_matrix(q, q)
