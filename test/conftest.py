@@ -1,11 +1,15 @@
-"""For all tests: what hypothesis draws, what they have for themselves, and who runs what."""
+"""For all tests: hypothesis profile, ROS domain, cache folder, processes, and worker groups."""
 
 import contextlib
+from operator import itemgetter
 import os
+from pathlib import Path
 
 from hypothesis import HealthCheck, settings
 import pytest
 from support.ros_domain import claim
+
+_TEST = Path(__file__).parent
 
 # The same examples in every run: CI=1 make test. More of them, or fewer:
 # HYPOTHESIS_EXAMPLES=5000 make test ARGS=test/dynamics
@@ -104,20 +108,65 @@ def shared():
         yield client
 
 
-# Both only with pytest-xdist, as scripts/test.sh starts it.
+# The rest only matters with pytest-xdist's `-n N --dist loadgroup --no-loadscope-reorder`, as
+# scripts/test.sh passes them: tests of one group run in one worker, groups in collection order.
+
+# These compute each public robot once per process: see support/result_cache.py.
+_SHARE_RESULTS = (
+    'dynamics/test_extreme_robots.py',
+    'dynamics/test_free_swing.py',
+    'dynamics/test_public_robots.py',
+    'test_accuracy_document.py',
+)
+# The slowest first: begun last, one of them would run alone. A missing file is no error.
+_SLOWEST = (
+    'test_code_style.py',
+    'benchmarks/test_node_latency.py',
+    'demo/test_demo.py',
+    'report/html/test_in_browser.py',
+    'test_benchmarks.py',
+    'dynamics/test_identities.py',
+    *_SHARE_RESULTS,
+    'demo/test_simulated_robot.py',
+    'ros/test_services.py',
+    'codegen/test_robots.py',
+    'codegen/test_manager.py',
+    'kernels/test_jit.py',
+)
 
 
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config, log):
-    if config.getvalue('dist') != 'load':
-        return None  # somebody wants it otherwise
-    from support.schedule import Schedule
+def _group(file):
+    """Return the group of a test file; None: each test starts its own processes, in any worker."""
+    if file in _SHARE_RESULTS:
+        return 'result_cache'
+    shares_a_node = file.endswith(('services.py', '_on_the_arm.py'))
+    return None if file.startswith('ros/') and not shares_a_node else file
 
-    return Schedule(config, log)
 
-
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the marks
 def pytest_collection_modifyitems(items):
-    if 'PYTEST_XDIST_WORKER' in os.environ:
-        from support.schedule import in_order
+    if 'PYTEST_XDIST_WORKER' not in os.environ:
+        return
+    slowest, by_kind = [], {True: [], False: []}
+    for item in items:
+        file = item.path.relative_to(_TEST).as_posix()
+        group = _group(file)
+        if group:
+            item.add_marker(pytest.mark.xdist_group(group))
+        if file in _SLOWEST:
+            slowest.append((_SLOWEST.index(file), item))
+        else:
+            by_kind[group is None].append(item)
+    # Waiting for processes and computing in turn: a core does one while the other waits.
+    mixed = [
+        (place / len(kind), item) for kind in by_kind.values() for place, item in enumerate(kind)
+    ]
+    items[:] = [item for part in (slowest, mixed) for _, item in sorted(part, key=itemgetter(0))]
 
-        items[:] = [items[place] for place in in_order([item.nodeid for item in items])]
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_logreport(report):
+    # Without the group that pytest-xdist appends, `--last-failed` finds the test again.
+    is_worker = 'PYTEST_XDIST_WORKER' in os.environ
+    if not is_worker and report.nodeid.rfind('@') > report.nodeid.rfind(']'):
+        report.nodeid = report.nodeid.rpartition('@')[0]
