@@ -5,9 +5,9 @@ Start a simulated arm and dynamics_node beside it; the arm's brakes are engaged.
     ros2 service call /dynamics_node/enable std_srvs/srv/SetBool '{data: true}'
     ros2 service call /simulated_robot/set_brakes std_srvs/srv/SetBool '{data: false}'
 
-With `rviz:=true` RViz shows masses, gravity and torques, which the markers program draws. With
-`namespace:=left` everything is below /left: two of them, left and right, are two arms that know
-nothing of each other.
+With `rviz:=true` RViz shows masses, gravity and torques, drawn by the markers program. With
+`namespace:=left` all names are below /left: the namespaces left and right are two independent
+arms.
 
 """
 
@@ -25,7 +25,7 @@ from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
-# What shows the robot, and publishes the frames of its links.
+# RViz, and the publisher of the link frames.
 VIEWERS = ('rviz2', 'robot_state_publisher')
 
 
@@ -74,7 +74,7 @@ def start(context):
             name='simulated_robot',
             namespace=namespace,
             parameters=[{'robot_description_file': robot, 'view': LaunchConfiguration('view')}],
-            # It has said why; the node would only say that nobody publishes a description.
+            # It has logged the reason; the node would only report a missing description.
             output='screen',
             on_exit=Shutdown(reason='the simulated robot has ended'),
         ),
@@ -90,16 +90,16 @@ def start(context):
 
 
 def file_of(argument, path):
-    """Return the whole path of a file, which must be there."""
+    """Return the absolute path of an existing file."""
     file = Path(path).expanduser().resolve()
-    # launch_ros only warns, and the node would start with the URDF's full effort limits.
+    # launch_ros only warns; the node would then start with the URDF's full effort limits.
     if not file.is_file():
         raise FileNotFoundError(f'{argument}: no such file: {str(file)!r}')
     return str(file)
 
 
 def show(context):
-    """Return RViz and the programs that it needs; the demo runs without RViz, too, and says so."""
+    """Return RViz and the programs that it needs, or a message if RViz is not installed."""
     missing = [package for package in VIEWERS if not is_installed(package)]
     if missing:
         return [
@@ -113,7 +113,7 @@ def show(context):
     robot = file_of('robot', LaunchConfiguration('robot').perform(context))
     text = Path(robot).read_text(encoding='utf-8')
     namespace = LaunchConfiguration('namespace')
-    # Link names are the same in every namespace, so each has its own frames.
+    # Link names are the same in all namespaces, so each has its own frames.
     frames = [('/tf', 'tf'), ('/tf_static', 'tf_static')]
     return [
         Node(
@@ -146,7 +146,7 @@ def show(context):
 
 
 def is_installed(package):
-    """Tell whether a package is there."""
+    """Return whether a package is installed."""
     try:
         get_package_prefix(package)
     except PackageNotFoundError:
@@ -155,7 +155,7 @@ def is_installed(package):
 
 
 def root_link(text):
-    """Return the link of a URDF that is nobody's child: the frame of the markers."""
+    """Return the root link of a URDF: the frame of the markers."""
     robot = ElementTree.fromstring(text.encode())
     children = {joint.find('child').get('link') for joint in robot.findall('joint')}
     return next(

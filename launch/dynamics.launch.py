@@ -4,8 +4,8 @@ Start dynamics_node with a parameter file.
     ros2 launch dynamics_node dynamics.launch.py params_file:=my_dynamics.yaml namespace:=left
     ros2 launch dynamics_node dynamics.launch.py robot:=my_arm.urdf joint_states:=/arm/states
 
-With `effort_guard:=true` the commands go through the effort guard, which fades them to zero when
-the node dies. Its parameters may stand in the same file, under /**/effort_guard.
+With `effort_guard:=true` the commands pass through the effort guard, which fades them to zero if
+the node dies. Its parameters may be in the same file, under /**/effort_guard.
 
 """
 
@@ -83,7 +83,7 @@ def start_guard(context):
 
 
 def start_node(context):
-    """Return the node; the argument robot counts more than the parameter file, if it is given."""
+    """Return the node; the argument robot overrides the parameter file."""
     robot = LaunchConfiguration('robot').perform(context)
     more = [{'robot_description_file': file_of('robot', robot)}] if robot else []
     if IfCondition(LaunchConfiguration('effort_guard')).evaluate(context):
@@ -106,9 +106,9 @@ def start_node(context):
 
 
 def file_of(argument, path):
-    """Return the whole path of a file, which must be there."""
+    """Return the absolute path of an existing file."""
     file = Path(path).expanduser().resolve()
-    # launch_ros only warns, and the node would start with the URDF's full effort limits.
+    # launch_ros only warns; the node would then start with the URDF's full effort limits.
     if not file.is_file():
         raise FileNotFoundError(f'{argument}: no such file: {str(file)!r}')
     return str(file)

@@ -1,4 +1,4 @@
-"""What an error says: texts from outside, as messages show them."""
+"""Texts of other programs, as quoted in error messages."""
 
 from dynamics_node.errors import quoted
 import pytest
