@@ -7,8 +7,8 @@ workspace    docs/workspace.png: gravity torque and payload over the workspace o
 report       docs/report_page.png: the page of the model report of an arm with a wrong mass
 benchmarks   docs/benchmarks_short.png: from docs/benchmarks.md, measures nothing
 
-Give names to draw only some. The first needs offscreen OpenGL: libegl1, or libosmesa6 and
-MUJOCO_GL=osmesa. The report needs chromium. The demo itself draws its own figure without.
+Arguments are the names of pictures; without them all are drawn. The first needs offscreen OpenGL:
+libegl1, or libosmesa6 and MUJOCO_GL=osmesa. The report needs chromium.
 
 """
 
@@ -22,7 +22,7 @@ ARM7 = ROOT / 'config' / 'robots' / 'arm7.urdf'
 
 
 def floating():
-    """Run the demo and draw what happened."""
+    """Run the demo and draw its result."""
     from dynamics_node.demo.__main__ import isolate, perform
     from pictures import floating, rendering
     from rich.console import Console
@@ -51,7 +51,7 @@ def workspace():
 
 
 def report():
-    """Take a picture of the report's page."""
+    """Take a screenshot of the report's page."""
     from pictures import report_page
 
     report_page.draw(ARM7, DOCS / 'report_page.png')
@@ -75,7 +75,7 @@ PICTURES = {
 
 
 def main(names):
-    """Draw the pictures of these names, or all."""
+    """Draw the named pictures, or all."""
     unknown = set(names) - set(PICTURES)
     if unknown:
         sys.exit(

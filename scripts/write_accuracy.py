@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """
-Write docs/accuracy.md: how far the library is from Pinocchio, MuJoCo and 80-bit arithmetic.
+Write docs/accuracy.md: differences from Pinocchio, MuJoCo and 80-bit arithmetic.
 
-It runs the sweep that `make test` runs. After a change of the kernels or of a library, in
+It computes the same comparison as `make test`. After a change of the kernels or of a library, in
 `make shell`:
 
     python scripts/write_accuracy.py

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """
-Write config/robots/*.yaml: parameter files for a first try of the arms that the demo holds.
+Write config/robots/*.yaml: parameter files for a first try of known arms.
 
-The limits follow from the URDF: what gravity needs anywhere in the range of the joints, and a
-quarter more. In `make shell`:
+The effort limits are the largest gravity torques in the range of the joints, and a quarter more.
+In `make shell`:
 
     python scripts/write_robot_configs.py
 
-and try each with the demo, as its first lines say.
+Then try each with the demo, by the command in its first lines.
 
 """
 
@@ -24,8 +24,8 @@ import numpy as np  # noqa: E402
 from support.robots import ARM7, public_robot  # noqa: E402
 
 FOLDER = ROOT / 'config' / 'robots'
-# Of the largest gravity torque; and at least this part of what the URDF allows.
-MARGIN, LEAST = 1.25, 0.05
+# Relative to the largest gravity torque, and relative to the URDF's limit.
+MARGIN, MIN_SHARE = 1.25, 0.05
 
 COMPENSATES = (
     'THE REAL ARM COMPENSATES GRAVITY ITSELF: never enable the output there, it would',
@@ -40,7 +40,7 @@ UNKNOWN = (
 
 @dataclass(frozen=True)
 class Arm:
-    """An arm: its URDF in example-robot-data (or of this repository), and what to beware of."""
+    """An arm: its URDF in example-robot-data (empty: arm7), and a warning."""
 
     title: str
     urdf: str
@@ -72,7 +72,7 @@ def first_limits(path):
     robot, own = report.model, {joint.name: joint.gravity for joint in report.joints}
     worst = np.array([own[name].magnitude for name in robot.joint_names])
     allowed = np.where(np.isfinite(robot.effort_limits), robot.effort_limits, np.inf)
-    least = np.where(np.isfinite(allowed), LEAST * allowed, 0.1)
+    least = np.where(np.isfinite(allowed), MIN_SHARE * allowed, 0.1)
     wanted = np.ceil(10.0 * np.maximum(MARGIN * worst, least)) / 10.0
     return np.minimum(wanted, allowed)
 

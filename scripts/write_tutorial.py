@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """
-Write into docs/tutorial.md what its commands print now.
+Update the printed output in docs/tutorial.md.
 
-It runs the whole page: two programs and a Python session. After a change of the page or of what
-the node says, in `make shell`:
+It runs the page: two programs and a Python session. After a change of the page or of the node's
+output, in `make shell`:
 
     python scripts/write_tutorial.py
 
-A line that ends with ' ...' is filled with the line of the program that has what stands before it.
+A line that ends with ' ...' is replaced by the first printed line that contains its beginning.
 
 """
 

@@ -43,7 +43,8 @@ def every(node, key):
         return [value for child in node for value in every(child, key)]
     if not isinstance(node, dict):
         return []
-    return [node[key]] * (key in node) + every(list(node.values()), key)
+    own = [node[key]] if key in node else []
+    return own + every(list(node.values()), key)
 
 
 def groups():
@@ -80,7 +81,7 @@ def test_topics_and_their_quality_of_service(display, key, topic):
     latched = settings['Durability Policy'] == 'Transient Local'
     assert latched == (topic == '/robot_description')
     code = (ROOT / 'dynamics_node/visualization/markers/node.py').read_text()
-    assert "declare_parameter('dynamics_node', 'dynamics_node'" in code
+    assert re.search(r"declare_parameter\(\s*'dynamics_node',\s*'dynamics_node'", code)
     assert "f'{self._followed.name}/markers'" in code
 
 

@@ -1,7 +1,7 @@
 """
-Topics and services of the node, each with a sentence for users.
+Topics and services of the node, with their descriptions.
 
-A test compares them with the graph of a running node, so what is missing or too much here fails.
+A test compares them with the graph of a running node.
 A new topic or service gets one line here; then run scripts/write_reference.py.
 
 """
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Entry:
-    """A topic or service: its name as people write it, its type, and when or what."""
+    """A topic or service: name, type and description."""
 
     name: str
     kind: str
@@ -36,7 +36,7 @@ PUBLISHED = (
     Entry(
         '~/gravity_torque',
         'sensor_msgs/msg/JointState',
-        'For every usable joint state, while somebody listens: name, position, effort = G',
+        'For every usable joint state, while it has a subscriber: name, position, effort = G',
     ),
     Entry(
         '~/dynamics',
@@ -119,7 +119,7 @@ SERVICES = (
     Entry('~/enable', 'std_srvs/srv/SetBool', 'Accepted, or the reasons why not'),
 )
 
-# Of the program effort_guard, in one table: topic or service, type, what passes there.
+# Topics and services of the program effort_guard.
 EFFORT_GUARD = (
     Entry(
         '~/commands',
@@ -154,7 +154,7 @@ EFFORT_GUARD = (
     ),
 )
 
-# Of the markers program; <node> is its parameter `dynamics_node`.
+# Topics and services of the markers program; <node> is its parameter `dynamics_node`.
 MARKERS = (
     Entry(
         '<node>/markers',
@@ -189,5 +189,5 @@ MARKERS = (
     ),
 )
 
-# Beside these, every node has them.
+# Topics of every node.
 OF_EVERY_NODE = ('/rosout', '/parameter_events', '/clock')

@@ -1,4 +1,4 @@
-"""The .msg and .srv files: every field with its comment."""
+"""The fields of .msg and .srv files, with their comments."""
 
 from dataclasses import dataclass, field
 import re
@@ -8,7 +8,7 @@ _FIELD = re.compile(r'^([A-Za-z][\w/\[\]<>=]*)\s+(\w+)\s*(?:=\s*(\S+)\s*)?(?:#\s
 
 @dataclass
 class Field:
-    """A field or a constant (with `value`) of an interface, and what its file says of it."""
+    """A field or a constant (with `value`) of an interface, and its comment."""
 
     kind: str
     name: str
@@ -18,7 +18,7 @@ class Field:
 
 @dataclass
 class Interface:
-    """An interface file: its introduction, and its fields, a list for each part."""
+    """An interface file: introduction, and a list of fields per part."""
 
     title: str
     introduction: list[str] = field(default_factory=list)
@@ -29,8 +29,8 @@ def read(path):
     """
     Read an interface file.
 
-    A comment above a field, with no blank line between, is that field's, as is one behind it
-    and the indented comments that follow. A comment before the first blank line is about all.
+    The comments of a field stand directly above it, behind it, and indented below it. A comment
+    before a blank line belongs to the introduction.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def read(path):
     Raises
     ------
     ValueError
-        If there is a line that is none of this, or a field without any comment.
+        If a line is neither field nor comment.
 
     """
     interface = Interface(path.stem)

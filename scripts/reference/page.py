@@ -1,4 +1,4 @@
-"""docs/reference.md as text."""
+"""The text of docs/reference.md."""
 
 from pathlib import Path
 import re
@@ -144,14 +144,14 @@ def _entries(title, words, entries):
 
 
 def _linked(kind):
-    """Return a type, linked to its fields where they stand on this page."""
+    """Return a type, with a link if its fields are on this page."""
     name = kind.rpartition('/')[2]
     return f'[{kind}](#{name.lower()})' if kind.startswith('dynamics_interfaces/') else kind
 
 
 def shown(default):
     """
-    Return a parameter's default as people write it on the command line.
+    Return a parameter's default in the syntax of the command line.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ def _parameters(parameters):
 
 
 def _coded(words):
-    """Mark what Markdown would take for its own: tags, and names with underscores."""
+    """Quote tags and names with underscores, which Markdown would interpret."""
     return re.sub(r'(<[a-z][^<>=]*>|~/\w+|\b[a-z]+(?:_[a-z]+)+(?:\.[a-z]+)?\b)', r'`\1`', words)
 
 

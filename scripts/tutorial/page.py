@@ -1,4 +1,4 @@
-"""The page taken apart: prose, Python, commands, and what is printed."""
+"""The parts of the page: prose, Python, commands and output."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,9 +13,9 @@ class Block:
     """
     A fenced block.
 
-    `kind` is python (is run), console (a program that is started, and its first lines) or text
-    (what is printed). `order` is the comment above it that no reader sees: the name of the
-    program whose lines a text has, or `stop NAME`.
+    `kind` is python (code to run), console (a program to start, and its first lines) or text
+    (output). `order` is the invisible comment above it: the name of the program that prints the
+    text, or `stop NAME`.
 
     """
 
@@ -26,7 +26,7 @@ class Block:
 
 def split(page):
     """
-    Take a page apart.
+    Split a page into prose and blocks.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def split(page):
     Returns
     -------
     list of str or Block
-        In their order; `join` makes the page of it again.
+        In order; `join` is the inverse.
 
     """
     parts, end = [], 0
@@ -46,7 +46,7 @@ def split(page):
 
 
 def join(parts):
-    """Make a page of its parts."""
+    """Return the page of these parts."""
     return ''.join(part if isinstance(part, str) else _fenced(part) for part in parts)
 
 

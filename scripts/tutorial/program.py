@@ -1,4 +1,4 @@
-"""A program of the tutorial, in a process of its own, and the lines that it prints."""
+"""A program of the tutorial as a process, and its printed lines."""
 
 import os
 import queue
@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 
-PATIENCE = 60.0  # s; a busy machine takes long to start a node
+TIMEOUT = 60.0  # s, of a line: a busy machine takes long to start a node
 
 
 class Program:
@@ -17,14 +17,14 @@ class Program:
 
     def __init__(self, command, folder):
         """
-        Start it.
+        Start the program.
 
         Parameters
         ----------
         command : str
-            Begins with `python`, which is the one that runs this.
+            Begins with `python`; the current interpreter runs it.
         folder : Path
-            Where it runs.
+            Working directory.
 
         """
         words = shlex.split(command)
@@ -45,7 +45,7 @@ class Program:
 
     def next_line(self, fits):
         """
-        Return the next line that fits, passing over others.
+        Return the next line that fits, skipping others.
 
         Parameters
         ----------
@@ -58,10 +58,10 @@ class Program:
         Raises
         ------
         AssertionError
-            If none comes within PATIENCE seconds; with the lines that came.
+            If none is printed within TIMEOUT; with the skipped lines.
 
         """
-        passed, end = [], time.monotonic() + PATIENCE
+        passed, end = [], time.monotonic() + TIMEOUT
         while (left := end - time.monotonic()) > 0:
             try:
                 line = self._lines.get(timeout=left)
@@ -73,7 +73,7 @@ class Program:
         raise AssertionError('the line did not come; these did:\n' + '\n'.join(passed))
 
     def stop(self):
-        """Press Ctrl-C, and wait for the end; returns the exit code."""
+        """Send SIGINT, and wait for the end; return the exit code."""
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGINT)
         try:

@@ -1,4 +1,4 @@
-"""Runs the page from its first block to its last, and puts what is printed into it."""
+"""Runs all blocks of the page, and puts their output into it."""
 
 import contextlib
 import io
@@ -12,15 +12,14 @@ from .program import Program
 ROOT = Path(__file__).resolve().parents[2]
 _STAMP = re.compile(r'\[\d{9,}\.\d+\]')
 _NUMBER = re.compile(r'-?\d+\.\d+(?:e[-+]?\d+)?')
-# A stated line that ends with this stands for any line that has what is before it.
+# A stated line that ends with this fits any line that contains its beginning.
 REST = ' ...'
 
 
 class Session:
-    """The programs that run, and the names that Python knows."""
+    """The running programs, and the namespace of the Python blocks."""
 
     def __init__(self):
-        """Begin with nothing."""
         self._programs = {}
         self._names = {'__name__': 'tutorial'}
         self._printed = ''
@@ -32,12 +31,12 @@ class Session:
         Parameters
         ----------
         parts : list of str or Block
-            As `page.split` returns them.
+            From `page.split`.
 
         Returns
         -------
         list of str or Block
-            The same with everything that was printed as it was printed now.
+            The same parts with the current output.
 
         """
         before = Path.cwd()
@@ -92,14 +91,14 @@ class Session:
 
 
 def fits(stated, line):
-    """Return whether a line is the stated one, but for its stamp and the size of its numbers."""
+    """Return whether a line is the stated one, except for stamp and decimal numbers."""
     if stated.endswith(REST):
         return stated.removesuffix(REST) in line
     return shape(stated) == shape(line)
 
 
 def shape(text):
-    """Return a text without stamps and without the value of its decimal numbers."""
+    """Return a text with placeholders for stamps and decimal numbers."""
     return _NUMBER.sub('#', _STAMP.sub('[stamp]', text))
 
 
