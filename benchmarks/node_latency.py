@@ -1,13 +1,13 @@
 """
-What the node costs beyond a bare rclpy relay: latency, processor time, services, start.
+The cost of the node beyond a bare rclpy relay: latency, processor time, services, start.
 
     python -m benchmarks.node_latency
     python -m benchmarks.node_latency --no-raw-states
 
-The node and the relay run in processes of their own, at the same time, and are fed in turn in
-short slices, so that whatever else the machine does hits both. All ratios are of what was
-measured in the same run. A latency is the time from publishing the state to the callback that gets
-the command, so it holds two executors: that of the process and that of the listener.
+The node and the relay run in separate processes, at the same time, and receive states in turn in
+short slices, so that other load of the machine affects both. All ratios come from the same run. A
+latency is the time from publishing the state to the callback that receives the command, so it
+contains two executors: that of the process and that of the subscriber.
 
 """
 

@@ -42,9 +42,9 @@ def _head(results, picture):
             f'{digits(results.seconds / 60)} minutes; do not edit by hand.',
             f'![Times of all libraries on logarithmic axes]({picture})',
             'A ratio is the time of a library divided by that of this one, `dynamics_node`: above '
-            '1 this one is faster. It is the median over interleaved rounds, the quartiles in '
-            'brackets. Times are medians; where others use the machine too they drift from table '
-            'to table, and ratios, which are taken within a round, much less.',
+            '1 this one is faster. It is the median over interleaved rounds, with the quartiles '
+            'in brackets. Times are medians; on a shared machine they drift from table to table. '
+            'Ratios drift much less, because they are taken within a round.',
             facts,
             libraries,
         ]
@@ -58,8 +58,8 @@ def _single(results):
         f'Called from Python, on {joints}. All libraries get the same URDF text; the '
         'fingers of Panda and of arm7, the arm of this repository, are fixed: their mass '
         'stays. Before it is timed, every call must give the numbers of this library, up '
-        f'to {TOLERANCE:g} of the largest element; what gives less is named in the column '
-        '*gives*.',
+        f'to {TOLERANCE:g} of the largest element. The column *gives* names the results of each '
+        'library.',
     ]
     for quantity, title in QUANTITIES.items():
         parts += [f'### {title[0].upper()}{title[1:]}', tables.single_table(results, quantity)]
@@ -71,14 +71,14 @@ def _batch(results):
         '## Many states at once',
         f'D, C and G of {results.batch_count} states of the 7-joint arm. The loop over '
         f'Pinocchio runs through {100 * LOOP_PART:g} % of the states and is scaled; it '
-        'copies what it computes into arrays, because the next call overwrites it. One '
-        'core: every thread of the process is held on one.',
+        'copies its results into arrays, because the next call overwrites them. One core: every '
+        'thread of the process is pinned to one.',
         tables.batch_table(results),
     ]
     if results.memory:
         parts.append(
             f'Memory of our call: the result has {_megabytes(results.memory["result"])}'
-            f', the peak besides it is {_megabytes(results.memory["besides"])}.'
+            f', the additional peak is {_megabytes(results.memory["besides"])}.'
         )
     return parts
 
@@ -88,7 +88,7 @@ def _scaling(results):
         '## Growth with the number of joints',
         'D, C and G of one state of generated robots, from the same URDF text for both. '
         f'The exponent is fitted to the {FITTED} largest sizes, round by round. A dense D '
-        'and C alone have n² entries, whatever is computed.',
+        'and C alone have n² entries for any algorithm.',
         tables.scaling_table(results),
     ]
 
@@ -98,13 +98,13 @@ def _how(results):
     parts = [
         '## How it is measured',
         f'In one process, garbage collector off, {results.rounds} rounds for single calls '
-        f'and growth, {fewer} for batches. In each round every library gets its turn, in '
-        'another order than before, for about '
+        f'and growth, {fewer} for batches. In each round every library gets its turn, in a '
+        'changing order, for about '
         f'{1000 * SAMPLE_SECONDS:g} ms of calls through changing states. Single calls are '
         f'measured in {PASSES} passes over all robots and quantities; calls longer than '
         f'{1000 * SLOW_CALL_SECONDS:g} ms take part in the first {SLOW_ROUNDS} rounds of '
-        'each. Models, data and everything that a library lets one prepare are made '
-        'before. What a call is made of:',
+        'each. Models, data and everything else that a library can prepare are made '
+        'before. The parts of a call:',
         tables.calls_table(results),
         '\n'.join(f'- **{name}**: {note}' for name, note in results.notes.items()),
     ]

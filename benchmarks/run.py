@@ -82,9 +82,9 @@ def _add_kdl(results, missing, python, robots, rounds, say):
     name = result['name']
     results.libraries[name] = result['version']
     results.notes[name] = (
-        f'{result["note"]} Debian builds it for its own Python only, so it ran in a process of '
-        f'its own (Python {result["python"]}, numpy {result["numpy"]}) with this library beside '
-        'it: its ratio is of that process.'
+        f'{result["note"]} Debian builds it for its own Python only, so it ran in a separate '
+        f'process (Python {result["python"]}, numpy {result["numpy"]}) together with this '
+        'library: its ratio comes from that process.'
     )
     label = f'{name} (own process)'
     results.single += [

@@ -3,10 +3,9 @@ The efforts of 10 000 points of a trajectory of the 7-joint arm, and its largest
 
     python -m benchmarks.trajectory_effort
 
-Ours as `RobotModel` gives them, on as many cores as there are. Beside it, on one core, what one
-would write in Python without it: scipy's cubic spline and a loop over Pinocchio's rnea that keeps
-the results; its first call has shown the same efforts. The ratio is to our efforts from positions
-alone, round by round.
+Ours with `RobotModel`, on all cores. For comparison, on one core, the usual Python code without
+it: scipy's cubic spline and a loop over Pinocchio's rnea that keeps the results; its first call
+gave the same efforts. The ratio is to our efforts from positions alone, round by round.
 
 """
 

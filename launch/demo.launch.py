@@ -5,9 +5,8 @@ Start a simulated arm and dynamics_node beside it; the arm's brakes are engaged.
     ros2 service call /dynamics_node/enable std_srvs/srv/SetBool '{data: true}'
     ros2 service call /simulated_robot/set_brakes std_srvs/srv/SetBool '{data: false}'
 
-With `rviz:=true` RViz shows masses, gravity and torques, drawn by the markers program. With
-`namespace:=left` all names are below /left: the namespaces left and right are two independent
-arms.
+With `rviz:=true`, RViz shows masses, gravity and torques, drawn by the markers program. With
+`namespace:=left` all names are below /left, so that two arms, left and right, run independently.
 
 """
 
@@ -25,7 +24,7 @@ from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
-# RViz, and the publisher of the link frames.
+# Packages that show the robot and publish the frames of its links.
 VIEWERS = ('rviz2', 'robot_state_publisher')
 
 
@@ -43,10 +42,12 @@ def generate_launch_description():
                 'params_file',
                 default_value='',
                 description='Parameter file of '
-                'the node. Empty: the defaults, but a state_timeout of 0.5 s',
+                'the node. Empty: the defaults, with a state_timeout of 0.5 s',
             ),
             DeclareLaunchArgument(
-                'namespace', default_value='', description='Namespace of both and of their topics'
+                'namespace',
+                default_value='',
+                description='Namespace of both nodes and of their topics',
             ),
             DeclareLaunchArgument(
                 'view', default_value='false', description='Open the viewer of the simulated robot'
@@ -64,7 +65,7 @@ def start(context):
     """Return the simulated robot and the node."""
     robot = file_of('robot', LaunchConfiguration('robot').perform(context))
     params_file = LaunchConfiguration('params_file').perform(context)
-    # A simulation on a desktop computer is late more often than an arm.
+    # A simulation on a desktop computer is late more often than a real arm.
     parameters = [file_of('params_file', params_file)] if params_file else [{'state_timeout': 0.5}]
     namespace = LaunchConfiguration('namespace')
     return [
@@ -74,7 +75,7 @@ def start(context):
             name='simulated_robot',
             namespace=namespace,
             parameters=[{'robot_description_file': robot, 'view': LaunchConfiguration('view')}],
-            # It has logged the reason; the node would only report a missing description.
+            # Its log has the reason; the node alone would only report a missing description.
             output='screen',
             on_exit=Shutdown(reason='the simulated robot has ended'),
         ),
@@ -92,14 +93,14 @@ def start(context):
 def file_of(argument, path):
     """Return the absolute path of an existing file."""
     file = Path(path).expanduser().resolve()
-    # launch_ros only warns; the node would then start with the URDF's full effort limits.
+    # launch_ros only warns, and the node would start with the URDF's full effort limits.
     if not file.is_file():
         raise FileNotFoundError(f'{argument}: no such file: {str(file)!r}')
     return str(file)
 
 
 def show(context):
-    """Return RViz and the programs that it needs, or a message if RViz is not installed."""
+    """Return RViz and the programs that it needs; without RViz, a log line and the demo alone."""
     missing = [package for package in VIEWERS if not is_installed(package)]
     if missing:
         return [
@@ -113,7 +114,7 @@ def show(context):
     robot = file_of('robot', LaunchConfiguration('robot').perform(context))
     text = Path(robot).read_text(encoding='utf-8')
     namespace = LaunchConfiguration('namespace')
-    # Link names are the same in all namespaces, so each has its own frames.
+    # Link names are the same in every namespace, so each has its own frames.
     frames = [('/tf', 'tf'), ('/tf_static', 'tf_static')]
     return [
         Node(
@@ -123,7 +124,7 @@ def show(context):
             namespace=namespace,
             output='screen',
         ),
-        # The simulated robot has published the description already.
+        # The simulated robot already publishes the description.
         Node(
             package='robot_state_publisher',
             executable='robot_state_publisher',

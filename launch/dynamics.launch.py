@@ -4,8 +4,8 @@ Start dynamics_node with a parameter file.
     ros2 launch dynamics_node dynamics.launch.py params_file:=my_dynamics.yaml namespace:=left
     ros2 launch dynamics_node dynamics.launch.py robot:=my_arm.urdf joint_states:=/arm/states
 
-With `effort_guard:=true` the commands pass through the effort guard, which fades them to zero if
-the node dies. Its parameters may be in the same file, under /**/effort_guard.
+With `effort_guard:=true` the commands pass through the effort guard, which fades them to zero when
+the node dies. Its parameters belong in the same file, under /**/effort_guard.
 
 """
 
@@ -36,7 +36,7 @@ def generate_launch_description():
                 'robot',
                 default_value='',
                 description='Path of the URDF. Empty: '
-                'as params_file says, or the topic robot_description',
+                'from params_file, or the topic robot_description',
             ),
             DeclareLaunchArgument(
                 'joint_states',
@@ -57,7 +57,7 @@ def generate_launch_description():
                 'controller_topic',
                 default_value='forward_effort_controller/commands',
                 description='Topic of the effort controller; only with '
-                'effort_guard, instead of the parameter command_topic',
+                'effort_guard, in place of the parameter command_topic',
             ),
             OpaqueFunction(
                 function=start_guard, condition=IfCondition(LaunchConfiguration('effort_guard'))
@@ -83,7 +83,7 @@ def start_guard(context):
 
 
 def start_node(context):
-    """Return the node; the argument robot overrides the parameter file."""
+    """Return the node; the argument robot, if given, overrides the parameter file."""
     robot = LaunchConfiguration('robot').perform(context)
     more = [{'robot_description_file': file_of('robot', robot)}] if robot else []
     if IfCondition(LaunchConfiguration('effort_guard')).evaluate(context):
@@ -108,7 +108,7 @@ def start_node(context):
 def file_of(argument, path):
     """Return the absolute path of an existing file."""
     file = Path(path).expanduser().resolve()
-    # launch_ros only warns; the node would then start with the URDF's full effort limits.
+    # launch_ros only warns, and the node would start with the URDF's full effort limits.
     if not file.is_file():
         raise FileNotFoundError(f'{argument}: no such file: {str(file)!r}')
     return str(file)

@@ -7,8 +7,9 @@ workspace    docs/workspace.png: gravity torque and payload over the workspace o
 report       docs/report_page.png: the page of the model report of an arm with a wrong mass
 benchmarks   docs/benchmarks_short.png: from docs/benchmarks.md, measures nothing
 
-Arguments are the names of pictures; without them all are drawn. The first needs offscreen OpenGL:
-libegl1, or libosmesa6 and MUJOCO_GL=osmesa. The report needs chromium.
+Give names to draw only some. The first needs offscreen OpenGL: libegl1, or libosmesa6 and
+MUJOCO_GL=osmesa. The report needs chromium and chromium-driver. The demo itself draws its own
+figure without.
 
 """
 
@@ -22,7 +23,7 @@ ARM7 = ROOT / 'config' / 'robots' / 'arm7.urdf'
 
 
 def floating():
-    """Run the demo and draw its result."""
+    """Run the demo and draw what happened."""
     from dynamics_node.demo.__main__ import isolate, perform
     from pictures import floating, rendering
     from rich.console import Console
@@ -51,7 +52,7 @@ def workspace():
 
 
 def report():
-    """Take a screenshot of the report's page."""
+    """Take a picture of the report's page."""
     from pictures import report_page
 
     report_page.draw(ARM7, DOCS / 'report_page.png')
@@ -75,7 +76,7 @@ PICTURES = {
 
 
 def main(names):
-    """Draw the named pictures, or all."""
+    """Draw the pictures of these names, or all."""
     unknown = set(names) - set(PICTURES)
     if unknown:
         sys.exit(

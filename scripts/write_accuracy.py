@@ -2,7 +2,7 @@
 """
 Write docs/accuracy.md: differences from Pinocchio, MuJoCo and 80-bit arithmetic.
 
-It computes the same comparison as `make test`. After a change of the kernels or of a library, in
+It runs the same sweep as `make test`. After a change of the kernels or of a library, in
 `make shell`:
 
     python scripts/write_accuracy.py

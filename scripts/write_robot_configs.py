@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """
-Write config/robots/*.yaml: parameter files for a first try of known arms.
+Write config/robots/*.yaml: parameter files for a first try of the arms that the demo holds.
 
-The effort limits are the largest gravity torques in the range of the joints, and a quarter more.
-In `make shell`:
+The limits follow from the URDF: the largest gravity torque in the range of the joints, plus a
+quarter. In `make shell`:
 
     python scripts/write_robot_configs.py
 
-Then try each with the demo, by the command in its first lines.
+Then try each file with the demo; its first lines contain the command.
 
 """
 
@@ -24,23 +24,24 @@ import numpy as np  # noqa: E402
 from support.robots import ARM7, public_robot  # noqa: E402
 
 FOLDER = ROOT / 'config' / 'robots'
-# Relative to the largest gravity torque, and relative to the URDF's limit.
-MARGIN, MIN_SHARE = 1.25, 0.05
+# Limit as a multiple of the largest gravity torque.
+MARGIN = 1.25
+# Smallest limit as a part of the URDF's limit.
+LEAST = 0.05
 
 COMPENSATES = (
-    'THE REAL ARM COMPENSATES GRAVITY ITSELF: never enable the output there, it would',
-    'be pushed up (docs/arms.md). Use the services and ~/gravity_torque.',
+    'THE REAL ARM COMPENSATES GRAVITY ITSELF: never enable the output there, it would push',
+    'the arm up (docs/arms.md). Use the services and ~/gravity_torque.',
 )
 UNKNOWN = (
-    'Whether the real arm compensates gravity below its effort interface was not found',
-    'out: command zero effort and let it go gently before you enable anything',
-    '(docs/arms.md).',
+    'It is unknown whether the real arm compensates gravity below its effort interface:',
+    'command zero effort and let it go gently before you enable the output (docs/arms.md).',
 )
 
 
 @dataclass(frozen=True)
 class Arm:
-    """An arm: its URDF in example-robot-data (empty: arm7), and a warning."""
+    """An arm: its URDF in example-robot-data (or of this repository), and a warning."""
 
     title: str
     urdf: str
@@ -49,7 +50,7 @@ class Arm:
 
 ARMS = {
     'arm7': Arm(
-        'the arm of this repository', '', ('There is no real one: it was designed for the demo.',)
+        'the arm of this repository', '', ('It was designed for the demo; no real one exists.',)
     ),
     'ur5': Arm('Universal Robots UR5', 'ur_description/urdf/ur5_robot.urdf', COMPENSATES),
     'panda': Arm('Franka Panda with its hand', 'panda_description/urdf/panda.urdf', COMPENSATES),
@@ -72,7 +73,7 @@ def first_limits(path):
     robot, own = report.model, {joint.name: joint.gravity for joint in report.joints}
     worst = np.array([own[name].magnitude for name in robot.joint_names])
     allowed = np.where(np.isfinite(robot.effort_limits), robot.effort_limits, np.inf)
-    least = np.where(np.isfinite(allowed), MIN_SHARE * allowed, 0.1)
+    least = np.where(np.isfinite(allowed), LEAST * allowed, 0.1)
     wanted = np.ceil(10.0 * np.maximum(MARGIN * worst, least)) / 10.0
     return np.minimum(wanted, allowed)
 
@@ -88,7 +89,7 @@ def render(name):
     limits = ', '.join(f'{limit:.1f}' for limit in first_limits(urdf_path(arm)))
     return f"""# {name}: {arm.title}, for a first try. URDF: {where}.
 #
-# Simulated only: the demo held this arm in MuJoCo with these parameters, no real one was tried.
+# Simulated only: the demo held this arm in MuJoCo with these parameters; no real one was tried.
 {warning}
 #
 #     python -m dynamics_node.demo.__main__ --robot {path} --params-file {name}.yaml
@@ -99,8 +100,8 @@ def render(name):
     joints:
 {joints}
 
-    # N m or N: what gravity needs anywhere in the range of the joints and a quarter more, at least
-    # a twentieth of the URDF's limit and never above it. Nothing is left for a payload.
+    # N m or N: the largest gravity torque in the range of the joints plus a quarter, at least a
+    # twentieth of the URDF's limit and never above it. This leaves nothing for a payload.
     effort_limits: [{limits}]
 """
 

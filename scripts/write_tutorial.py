@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """
-Update the printed output in docs/tutorial.md.
+Write the present output of its commands into docs/tutorial.md.
 
-It runs the page: two programs and a Python session. After a change of the page or of the node's
-output, in `make shell`:
+It runs the whole page: two programs and a Python session. After a change of the page or of the
+node's log lines, in `make shell`:
 
     python scripts/write_tutorial.py
 
-A line that ends with ' ...' is replaced by the first printed line that contains its beginning.
+A line that ends with ' ...' is replaced by the program's line with the same beginning.
 
 """
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 import re
 
-from dynamics_node.report.command_line import parse
+from dynamics_node.report.__main__ import parse
 import pytest
 from test_readme import blocks
 

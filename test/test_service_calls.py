@@ -30,7 +30,8 @@ def test_it_is_one_that_the_node_understands(document, service, kind, request_te
     fill(service_type.Request(), yaml.safe_load(request_text.strip("'") or '{}'))
     code = ''.join(path.read_text() for path in (ROOT / 'dynamics_node').rglob('*.py'))
     # Its name stands in the code, beside its type.
-    assert f"{name}, '{Path(service).name}'" in code or f"{name}, '~/{Path(service).name}'" in code
+    own = re.escape(Path(service).name)
+    assert re.search(rf"\b{name}, '(~/)?{own}'|service\({name}\)\s+def {own}\(", code)
 
 
 def test_all_calls_are_found():

@@ -10,7 +10,7 @@ NAME = 'Drake'
 PACKAGE = 'drake'
 NOTE = (
     'It has no C: beside D it gives the vectors C q̇ and G. Setting the state in the context '
-    'is included; quantities of one state share what the context remembers.'
+    "is included; quantities of one state share the context's cache."
 )
 
 

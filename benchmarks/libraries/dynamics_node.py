@@ -11,7 +11,7 @@ PACKAGE = 'dynamics_node'
 VERSION = ElementTree.parse(ROOT / 'package.xml').findtext('version')
 NOTE = (
     "Machine code of the robot's own, the methods of `RobotModel` themselves: arguments are "
-    "checked, and an answer that is held stays its holder's."
+    'checked, and returned arrays are never overwritten while referenced.'
 )
 
 

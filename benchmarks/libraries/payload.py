@@ -6,9 +6,9 @@ __all__ = ['NAME', 'NOTE', 'PACKAGE', 'VERSION', 'calls']
 
 NAME = 'dynamics_node, payload'
 NOTE = (
-    'The machine code that reads the inertia of the bodies when it runs, so one serves every '
-    'payload in the same time. This one is 1e-15 kg on the last link, so that the results '
-    'can be held against the others.'
+    'The machine code that reads the inertia of the bodies at run time: one variant serves '
+    'every payload in the same time. Here 1e-15 kg on the last link, so that the results can '
+    'be compared with the others.'
 )
 _MASS = 1e-15
 

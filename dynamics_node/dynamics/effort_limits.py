@@ -281,11 +281,11 @@ def _rounding(tree, body, position, q):
     while body >= 0:
         chain.append(body)
         reach += np.linalg.norm(tree.joint_placement[body, :3, 3])
-        if tree.joint_type[body] == PRISMATIC:
+        if tree.is_prismatic[body]:
             reach += np.abs(tree.multiplier[body] * q[:, tree.q_index[body]] + tree.offset[body])
         body = tree.parent[body]
     result = np.zeros((len(q), len(tree.joint_names)))
     for k in chain:
-        lever = 1.0 if tree.joint_type[k] == PRISMATIC else reach
+        lever = 1.0 if tree.is_prismatic[k] else reach
         result[:, tree.q_index[k]] += abs(tree.multiplier[k]) * lever
     return _ROUNDING * len(chain) * result

@@ -16,7 +16,6 @@ from ..codegen.manager import Specialization
 from ..errors import ArgumentError
 from ..kernels.packing import pack
 from ..model import build_tree
-from ..model.tree import REVOLUTE
 from ..urdf import read_urdf
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
@@ -203,9 +202,10 @@ class RobotModel:
     @property
     def is_continuous(self):
         """Joints that turn without end, bool, shape (n,): revolute, with no position limit."""
-        kinds = dict(zip(self._tree.moving_joint_names, self._tree.joint_type, strict=True))
-        turns = [kinds[name] == REVOLUTE for name in self.joint_names]
-        return np.array(turns, dtype=bool) & np.isinf(self._tree.limits[:, :2]).all(axis=1)
+        independent = self._tree.is_independent
+        turns = np.empty(self._n, dtype=bool)
+        turns[self._tree.q_index[independent]] = ~self._tree.is_prismatic[independent]
+        return turns & np.isinf(self._tree.limits[:, :2]).all(axis=1)
 
     @property
     def neutral_position(self):

@@ -6,15 +6,16 @@ import time
 import numpy as np
 from rclpy.node import Node
 
+from .context import NodeContext
 from .parameters.live_change_check import check_change
 from .parameters.model_settings import PER_JOINT
 from .parameters.parameters import Parameters
 from .parameters.table import ParameterError
 from .publishers.diagnostics import Diagnostics
 from .publishers.external_torque import ExternalTorque
-from .publishers.result_publishers import Results
-from .services.payload_gravity_services import SettingServices
-from .services.state_services import DynamicsServices
+from .publishers.result_publishers import ResultPublishers
+from .services.payload_gravity_services import PayloadGravityServices
+from .services.state_services import StateServices
 from .services.trajectory_services import TrajectoryServices
 from .support.callback_errors import logged
 from .support.callback_groups import ServiceGroup
@@ -25,7 +26,7 @@ from .torque_path.active_robot import read_robot
 from .torque_path.command_output import CommandOutput, output_settings
 from .torque_path.controller_check import Controllers
 from .torque_path.enabling import Enabling
-from .torque_path.joint_state_input import StateInput
+from .torque_path.joint_state_input import JointStateInput
 from .torque_path.protection import Protection
 from .torque_path.publisher_monitor import PublisherMonitor
 from ..errors import DynamicsError
@@ -49,7 +50,7 @@ class DynamicsNode(Node):
         Parameters
         ----------
         raw_states : bool
-            See `StateInput`.
+            See `JointStateInput`.
         **options
             Of rclpy.node.Node.
 
@@ -65,43 +66,31 @@ class DynamicsNode(Node):
         self.service_group = ServiceGroup(self._is_driving)
         super().__init__('dynamics_node', **options)
         self.logger = self.get_logger()
-        self._robot = None
         self._has_states = False
         self._next_check = self._next_second = 0.0
         self._not_finite, self._silent = Throttle(1.0), Throttle(SILENT_EVERY)
         self._gravity_change = GravityChange()
         self.parameters = Parameters(self)
-        self._results = Results(self, self.parameters)
-        self._external_torque = ExternalTorque(self, self.parameters)
-        self.output = CommandOutput(
-            self, self.parameters, self._output_changed, self._check_if_due
-        )
+        self._shared = context = NodeContext(self, self.parameters)
+        self._results = ResultPublishers(context)
+        self._external_torque = ExternalTorque(context)
+        self.output = CommandOutput(context, self._output_changed, self._check_if_due)
         self.path = self.output.path
-        self.states = StateInput(self, self.parameters, self.output, self, raw_states)
+        self.states = JointStateInput(context, self.output, self, raw_states)
         self._wants_enable = self.parameters['enable_on_start']
-        self.source = DescriptionSource(self, self.parameters, self._described)
-        monitor = PublisherMonitor(
-            self,
-            self.output.topic,
-            self.states,
-            self.source,
-            self.parameters['allow_several_state_publishers'],
-        )
+        self.source = DescriptionSource(context, self._described)
+        monitor = PublisherMonitor(context, self.output.topic, self.states, self.source)
         controllers = Controllers(self, self.output.topic)
-        self._enabling = Enabling(
-            self, self.parameters, self._get_robot, self.output, monitor, controllers, self.source
-        )
-        self._diagnostics = Diagnostics(
-            self, self.parameters, self._get_robot, self.states, self.output, self._external_torque
-        )
-        self._answering = [
-            DynamicsServices(self, self._get_robot, self.parameters),
-            SettingServices(self, self._get_robot, self.parameters),
-            TrajectoryServices(self, self._get_robot, self.parameters, lambda: self.path.is_on),
+        self._enabling = Enabling(context, self.output, monitor, controllers, self.source)
+        self._diagnostics = Diagnostics(context, self.states, self.output, self._external_torque)
+        self._robot_services = [
+            StateServices(context),
+            PayloadGravityServices(context),
+            TrajectoryServices(context, self.path),
         ]
-        self._hints = Hints(self, self._get_robot, self.source, self.states)
+        self._hints = Hints(context, self.source, self.states)
         self.parameters.watch(self._reconfigured, self._check_against_robot)
-        self._protection = Protection(self, self.output, monitor, controllers, self._get_robot)
+        self._protection = Protection(context, self.output, monitor, controllers)
         self.source.begin()
 
     def create_service(self, *arguments, callback_group=None, **options):
@@ -116,9 +105,6 @@ class DynamicsNode(Node):
 
     def _is_driving(self):
         return self.path.is_driving
-
-    def _get_robot(self):
-        return self._robot
 
     def _described(self, source, origin):
         # True if it was taken, or refused for good; False if it may be offered again.
@@ -135,17 +121,18 @@ class DynamicsNode(Node):
         except (DynamicsError, ParameterError) as error:
             if origin.startswith('parameter'):
                 raise
-            kept = 'the one before stays in force' if self._robot else 'still waiting for one'
+            kept = 'still waiting for one'
+            if self._shared.robot is not None:
+                kept = 'the one before stays in force'
+                self._shared.robot.refused_since = str(error)
             self.logger.error(f'robot description from {origin} refused, {kept}: {error}')
-            if self._robot is not None:
-                self._robot.refused_since = str(error)
             return True
         if self.parameters['machine_code']:
             # In another process; the general kernel answers meanwhile. For payloads too: when
             # one comes, the arm may float, and nothing should be started then.
             robot.model.specialize(wait=False, loads=True)
-        is_first = self._robot is None
-        self._robot = robot
+        is_first = self._shared.robot is None
+        self._shared.robot = robot
         self.path.use(robot.buffer)
         self._configure(self.parameters.values)
         self._announce(robot, origin)
@@ -180,7 +167,7 @@ class DynamicsNode(Node):
                 )
 
     def _check_against_robot(self, values):
-        robot, before = self._robot, self.parameters.values
+        robot, before = self._shared.robot, self.parameters.values
         if robot is None:
             return
         self._check_lengths(values, robot)
@@ -189,8 +176,8 @@ class DynamicsNode(Node):
             check_change(robot, model, values, before, self._gravity_change, time.monotonic())
 
     def _reconfigured(self, values, before):
-        if self._robot is not None:
-            self._robot.configure(values, before)
+        if self._shared.robot is not None:
+            self._shared.robot.configure(values, before)
             if values['gravity'] != before['gravity']:
                 self._gravity_change.accept(time.monotonic(), values['gravity'])
         else:
@@ -198,7 +185,7 @@ class DynamicsNode(Node):
         self._configure(values)
 
     def _configure(self, values):
-        robot = self._robot
+        robot = self._shared.robot
         if robot is not None:
             self.path.configure(
                 time.monotonic(),
@@ -212,7 +199,7 @@ class DynamicsNode(Node):
 
     def on_state(self, stamp):
         """Publish what follows from a joint state besides the command, which has gone out."""
-        robot, effort = self._robot, self.path.gravity_torque
+        robot, effort = self._shared.robot, self.path.gravity_torque
         if not all(map(math.isfinite, effort.tolist())):
             if self._not_finite.is_due():
                 self.logger.warning(
@@ -249,9 +236,9 @@ class DynamicsNode(Node):
             self.source.offer_pending()  # a description that came while the output was on
         self._hints.give()
         self.states.adapt_queue()
-        if self._robot is not None:
-            self._robot.state_publishers = self.states.publishers
-            self._warn_of_silent_joints(self._robot)
+        if self._shared.robot is not None:
+            self._shared.robot.state_publishers = self.states.publishers
+            self._warn_of_silent_joints(self._shared.robot)
         self._diagnostics.measure()
         self._diagnostics.publish()
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.tree import KinematicTree, PRISMATIC
+from ..model.tree import KinematicTree
 
 # Relative to the reach: radius of the heaviest body's sphere, radius of the largest arc around a
 # joint, length of the arrow of 9.81 m/s², height of a text, least thickness of a solid.
@@ -110,7 +110,7 @@ def reach(tree: KinematicTree) -> float:
 def _travel(tree: KinematicTree, k: int) -> float:
     # A prismatic joint adds its travel: rails are long, with the joint frame at one end.
     low, high = tree.limits[tree.q_index[k], :2]
-    travel = high - low if tree.joint_type[k] == PRISMATIC else 0.0
+    travel = high - low if tree.is_prismatic[k] else 0.0
     return travel * abs(tree.multiplier[k]) if travel < _UNLIMITED_TRAVEL else 0.0
 
 

@@ -11,7 +11,6 @@ from . import colors
 from .scale import Scale
 from .shapes import DISC, frame_around, LINE, Shape, TEXT
 from ..model import KinematicTree
-from ..model.tree import PRISMATIC
 
 GRAVITY_TORQUE, EFFORT, JOINTS, TEXTS = 'gravity_torque', 'effort', 'joints', 'torque_text'
 # Arc at the limit and longest arc, rad: an arc never closes.
@@ -52,7 +51,7 @@ class TorqueArcs:
         rows = [tree.moving_joint_names.index(name) for name in names]
         self._rows = np.array(rows, dtype=np.int64)
         self._parents = tree.parent[self._rows]
-        self._is_prismatic = [bool(tree.joint_type[row] == PRISMATIC) for row in rows]
+        self._is_prismatic = tree.is_prismatic[self._rows].tolist()
         self._radius = [float(scale.arcs[row]) for row in rows]
         self._frames = np.array(
             [tree.joint_placement[row, :3, :3] @ frame_around(tree.axis[row]) for row in rows]

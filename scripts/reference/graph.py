@@ -1,8 +1,8 @@
 """
-Topics and services of the node, with their descriptions.
+Topics and services of the node, each with a sentence for users.
 
-A test compares them with the graph of a running node.
-A new topic or service gets one line here; then run scripts/write_reference.py.
+A test compares them with the graph of a running node and fails on a missing or superfluous entry.
+Add one entry for a new topic or service; then run scripts/write_reference.py.
 
 """
 
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Entry:
-    """A topic or service: name, type and description."""
+    """A topic or service: its name with `~`, its type, and its meaning."""
 
     name: str
     kind: str
@@ -22,13 +22,13 @@ SUBSCRIBED = (
     Entry(
         'joint_states',
         'sensor_msgs/msg/JointState',
-        'By name: any order, parts, other joints besides, no velocity: all fine. Best effort, '
-        'the newest wins. With several publishers, none loses its state to another one',
+        'Read by name: any order, subsets, additional joints and missing velocities are accepted. '
+        'Best effort, the newest wins. With several publishers, each keeps its newest state',
     ),
     Entry(
         'robot_description',
         'std_msgs/msg/String',
-        'As robot_state_publisher publishes it, transient local; not where a parameter gives it',
+        'As from robot_state_publisher, transient local; not subscribed if a parameter gives it',
     ),
 )
 
@@ -47,8 +47,8 @@ PUBLISHED = (
         '~/external_torque',
         'sensor_msgs/msg/JointState',
         'For every usable joint state with velocity and effort, while '
-        '`publish_external_torque` is true: name, position, velocity, effort = what pushes the '
-        'joints from outside',
+        '`publish_external_torque` is true: name, position, velocity, effort = the external '
+        'torque on each joint',
     ),
     Entry(
         'forward_effort_controller/commands',
@@ -60,14 +60,14 @@ PUBLISHED = (
         '~/state',
         'dynamics_interfaces/msg/OutputState',
         'From the first model on, on every change, transient local: READY, STARTING, ACTIVE, '
-        'STOPPING, FAULT and the reason',
+        'STOPPING, FAULT or HOLDING, and the reason',
     ),
     Entry(
         '/diagnostics',
         'diagnostic_msgs/msg/DiagnosticArray',
         'Once a second and on every change: model, joint states (rate, age, publishers, '
         'skipped, rejected by reason), output (rate, limits hit), state machine (reason, '
-        'latched fault), external torque (what is missing, efforts that can hardly be torques)',
+        'latched fault), external torque (missing inputs, efforts that can hardly be torques)',
     ),
 )
 
@@ -88,12 +88,12 @@ SERVICES = (
     Entry(
         '~/forward_dynamics',
         'dynamics_interfaces/srv/ForwardDynamics',
-        'The accelerations that efforts cause; joints that are not in `joints` are held',
+        'The accelerations caused by efforts; joints outside `joints` are held',
     ),
     Entry(
         '~/get_jacobian',
         'dynamics_interfaces/srv/GetJacobian',
-        'J of a point of any link, 6 x n, linear rows first, base frame; and where it is',
+        'J of a point of any link, 6 x n, linear rows first, base frame; and the pose',
     ),
     Entry(
         '~/compute_trajectory_effort',
@@ -103,8 +103,8 @@ SERVICES = (
     Entry(
         '~/get_max_payload',
         'dynamics_interfaces/srv/GetMaxPayload',
-        'The largest mass at a point of a link, at a state or over a trajectory, and the joint '
-        'that allows no more',
+        'The largest mass at a point of a link, at a state or over a trajectory, and the limiting '
+        'joint',
     ),
     Entry(
         '~/set_payload',
@@ -116,10 +116,10 @@ SERVICES = (
         'dynamics_interfaces/srv/SetGravity',
         'Gravity in force; it points to the earth, in the frame of any link',
     ),
-    Entry('~/enable', 'std_srvs/srv/SetBool', 'Accepted, or the reasons why not'),
+    Entry('~/enable', 'std_srvs/srv/SetBool', 'Accepted, or every reason for the refusal'),
 )
 
-# Topics and services of the program effort_guard.
+# Of the program effort_guard, in one table: topic or service, type, content.
 EFFORT_GUARD = (
     Entry(
         '~/commands',
@@ -138,7 +138,7 @@ EFFORT_GUARD = (
         'dynamics_interfaces/msg/OutputState',
         'Published on every change, transient local. READY: no effort is in force. ACTIVE: '
         'commands pass. STOPPING: the last command fades. FAULT: it has faded, or commands do '
-        'not begin near zero. STARTING: the output approaches commands that came again',
+        'not begin near zero. STARTING: the output approaches returning commands',
     ),
     Entry(
         '/diagnostics',
@@ -149,12 +149,11 @@ EFFORT_GUARD = (
     Entry(
         '~/reset',
         'std_srvs/srv/Trigger',
-        'Service. Leaves FAULT: the next commands are taken whatever they are, by a ramp from '
-        'zero',
+        'Service. Leaves FAULT: the next commands are taken with any values, by a ramp from zero',
     ),
 )
 
-# Topics and services of the markers program; <node> is its parameter `dynamics_node`.
+# Of the markers program; <node> is its parameter `dynamics_node`.
 MARKERS = (
     Entry(
         '<node>/markers',
@@ -180,7 +179,7 @@ MARKERS = (
     Entry(
         '/parameter_events',
         'rcl_interfaces/msg/ParameterEvent',
-        'Subscribed: payload, gravity and limits that change',
+        'Subscribed: changes of payload, gravity and limits',
     ),
     Entry(
         '<node>/get_parameters',
@@ -189,5 +188,5 @@ MARKERS = (
     ),
 )
 
-# Topics of every node.
+# Every node has these as well.
 OF_EVERY_NODE = ('/rosout', '/parameter_events', '/clock')

@@ -1,4 +1,4 @@
-"""The fields of .msg and .srv files, with their comments."""
+"""The .msg and .srv files: every field with its comment."""
 
 from dataclasses import dataclass, field
 import re
@@ -8,7 +8,7 @@ _FIELD = re.compile(r'^([A-Za-z][\w/\[\]<>=]*)\s+(\w+)\s*(?:=\s*(\S+)\s*)?(?:#\s
 
 @dataclass
 class Field:
-    """A field or a constant (with `value`) of an interface, and its comment."""
+    """A field or a constant (with `value`) of an interface, with its comment."""
 
     kind: str
     name: str
@@ -18,7 +18,7 @@ class Field:
 
 @dataclass
 class Interface:
-    """An interface file: introduction, and a list of fields per part."""
+    """An interface file: its introduction, and its fields, a list for each part."""
 
     title: str
     introduction: list[str] = field(default_factory=list)
@@ -29,8 +29,8 @@ def read(path):
     """
     Read an interface file.
 
-    The comments of a field stand directly above it, behind it, and indented below it. A comment
-    before a blank line belongs to the introduction.
+    A comment belongs to a field if it is directly above it, behind it, or indented below it. A
+    comment before the first blank line describes the whole interface.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def read(path):
     Raises
     ------
     ValueError
-        If a line is neither field nor comment.
+        If a line is neither a comment nor a field.
 
     """
     interface = Interface(path.stem)

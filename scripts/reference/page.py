@@ -1,4 +1,4 @@
-"""The text of docs/reference.md."""
+"""docs/reference.md as text."""
 
 from pathlib import Path
 import re
@@ -20,43 +20,42 @@ launch files; do not edit by hand. A test compares it with a running node.
 
 Units are SI. Names are relative or private (`~` is the node, `/dynamics_node` by default), so
 namespaces and remapping work. n is the number of joints, in the order of the parameter
-`joints`. A joint that is not in `joints` still carries mass: it stands at its measured
-position, or at its neutral one (zero, or the nearest within the limits) while it was never
-measured.
+`joints`. A joint outside `joints` still carries mass: it stands at its measured position or,
+before the first measurement, at its neutral one (zero, or the nearest value within the limits).
 
 [Topics](#topics) · [Services](#services) · [Parameters](#parameters) · [Programs and launch
 files](#programs-and-launch-files) · [Effort guard](#effort-guard) ·
 [Messages](#messages) · [Service types](#service-types)"""
 
 EXTERNAL_TORQUE = """**External torque.** With `publish_external_torque: true`,
-`~/external_torque` says in N m or N what pushes each joint from outside. joint_states needs
-velocities, and efforts that are joint torques with gravity ([whose are](arms.md));
-`/diagnostics` says what is missing or can hardly be right. An unknown payload or friction
-counts as a push. States must come at more than 10 Hz, and parts of a state count when all have
-come."""
+`~/external_torque` is the external torque on each joint, N m or N. joint_states needs velocities,
+and efforts that are joint torques with gravity
+([from which drivers](arms.md#whose-efforts-are-torques)); `/diagnostics` reports missing or
+implausible inputs. An unknown payload or friction counts as an external torque. States must
+arrive at more than 10 Hz; partial states count when all joints have arrived."""
 
 SERVICES = """All answer `success` and `message`; on failure every array is empty. The empty
 request `{}` asks for the newest measured position, at rest; `position` and `velocity` ask for
 another state, `joint_names` for another order. Matrices are row-major. While efforts are sent, a
-request waits up to 0.1 s for the torque, and those within 0.25 s of it do not; `~/enable` never
-waits."""
+request waits up to 0.1 s to give the torque precedence, and further requests within 0.25 s do not
+wait; `~/enable` never waits."""
 
 PARAMETERS_TEXT = """A commented file with all of them:
-[config/dynamics.yaml](../config/dynamics.yaml). Wrong values are refused with the reason, at
-the start and at run time. Read-only ones are set at the start. Besides these, the node has those
+[config/dynamics.yaml](../config/dynamics.yaml). Wrong values are refused with the reason, at the
+start and at run time. Read-only parameters are set at the start. The node also has the parameters
 of every ROS 2 node: `use_sim_time` (on both sides, if a simulation publishes `/clock`),
 `start_type_description_service`, and `qos_overrides./joint_states.subscription.*` (`reliability`,
-`depth`, `history`, `durability`; the topic's resolved name stands in the middle). To hear a state
-that was published before the node started, it needs both `durability:=transient_local` and
+`depth`, `history`, `durability`; the topic's resolved name stands in the middle). To receive a
+state that was published before the node started, it needs both `durability:=transient_local` and
 `reliability:=reliable`."""
 
-PROGRAMS = """| command | what it is |
+PROGRAMS = """| command | program |
 |---|---|
 | `ros2 run dynamics_node dynamics_node` | the node |
-| `ros2 run dynamics_node markers` | what RViz shows of the node: [markers](#markers-program) |
-| `ros2 run dynamics_node report my_arm.urdf` | what the URDF says, and what is wrong with it |
+| `ros2 run dynamics_node markers` | [markers](#markers-program) of the node for RViz |
+| `ros2 run dynamics_node report my_arm.urdf` | [contents and errors](report.md) of a URDF |
 | `ros2 run dynamics_node effort_guard` | [fades the effort](effort_guard.md) when the node dies |
-| `ros2 run dynamics_node simulated_robot` | an arm in MuJoCo with brakes, to try the node with |
+| `ros2 run dynamics_node simulated_robot` | an arm in MuJoCo with brakes, for a first try |
 | `ros2 run dynamics_node demo` | the demo: `make demo` without make |
 
 Where ROS 2 comes from PyPI there is no `ros2` command; `python -m dynamics_node.ros.main`,
@@ -64,20 +63,20 @@ Where ROS 2 comes from PyPI there is no `ros2` command; `python -m dynamics_node
 `python -m dynamics_node.ros.effort_guard.main`, `python -m dynamics_node.demo.simulated_robot`
 and `python -m dynamics_node.demo.__main__` are the same programs."""
 
-MARKERS = """`ros2 run dynamics_node markers` draws for one dynamics node, in a process of its own.
-Its one parameter, `dynamics_node`, is the name of that node (default `dynamics_node`), relative to
-the namespace of the program; read-only. It is `<node>` in the table."""
+MARKERS = """`ros2 run dynamics_node markers` draws for one dynamics node, in a separate process.
+Its only parameter, `dynamics_node`, is the name of that node (default `dynamics_node`), relative
+to the namespace of the program; read-only. It is `<node>` in the table."""
 
 OPTIONS = """`--executor events` is refused, with the reason, where its self-test at start fails:
-before rclpy 7.1.11 it runs no callback that answers late, and some builds of it wait with a busy
-core. `--no-raw-states` costs latency and processor time."""
+before rclpy 7.1.11 it runs no asynchronous callback, and some builds of it wait with a busy core.
+`--no-raw-states` costs latency and processor time."""
 
-EFFORT_GUARD = """The program `effort_guard` is a process of its own, the node
+EFFORT_GUARD = """The program `effort_guard` is a separate process, the node
 `/effort_guard`. [How to use it](effort_guard.md)."""
 
-EFFORT_GUARD_PARAMETERS = """Its parameters, all read-only: they are set at the start. Besides them
-it offers `joints` and `interface_name` as soon as the controller behind it has told its own; they
-cannot be set."""
+EFFORT_GUARD_PARAMETERS = """Its parameters are all read-only: they are set at the start. As soon
+as the controller behind it has answered, it also offers the controller's `joints` and
+`interface_name`; they cannot be set."""
 
 
 def render():
@@ -102,7 +101,7 @@ def render():
                 EXTERNAL_TORQUE,
                 '## Services',
                 SERVICES,
-                _entries('service', 'answer', graph.SERVICES),
+                _entries('service', 'response', graph.SERVICES),
                 '## Parameters',
                 PARAMETERS_TEXT,
                 _parameters(PARAMETERS),
@@ -115,7 +114,7 @@ def render():
                 OPTIONS,
                 '## Effort guard',
                 EFFORT_GUARD,
-                _entries('topic or service', 'what passes there', graph.EFFORT_GUARD),
+                _entries('topic or service', 'content', graph.EFFORT_GUARD),
                 EFFORT_GUARD_PARAMETERS,
                 _parameters(GUARD_PARAMETERS),
                 '### Markers program',
@@ -124,7 +123,7 @@ def render():
                 '## Messages',
                 *_interfaces('msg', [None]),
                 '## Service types',
-                *_interfaces('srv', ['request', 'answer']),
+                *_interfaces('srv', ['request', 'response']),
             ]
         )
         + '\n'
@@ -144,14 +143,14 @@ def _entries(title, words, entries):
 
 
 def _linked(kind):
-    """Return a type, with a link if its fields are on this page."""
+    """Return a type, linked to its fields if they are on this page."""
     name = kind.rpartition('/')[2]
     return f'[{kind}](#{name.lower()})' if kind.startswith('dynamics_interfaces/') else kind
 
 
 def shown(default):
     """
-    Return a parameter's default in the syntax of the command line.
+    Return a parameter's default as on the command line.
 
     Parameters
     ----------
@@ -190,7 +189,7 @@ def _parameters(parameters):
 
 
 def _coded(words):
-    """Quote tags and names with underscores, which Markdown would interpret."""
+    """Mark tags and names with underscores as code, which Markdown would interpret."""
     return re.sub(r'(<[a-z][^<>=]*>|~/\w+|\b[a-z]+(?:_[a-z]+)+(?:\.[a-z]+)?\b)', r'`\1`', words)
 
 

@@ -1,4 +1,4 @@
-"""The parts of the page: prose, Python, commands and output."""
+"""The page in parts: prose, Python, commands, and their output."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,8 +14,8 @@ class Block:
     A fenced block.
 
     `kind` is python (code to run), console (a program to start, and its first lines) or text
-    (output). `order` is the invisible comment above it: the name of the program that prints the
-    text, or `stop NAME`.
+    (output). `order` is the invisible comment above it: the name of the program with these lines,
+    or `stop NAME`.
 
     """
 
@@ -26,7 +26,7 @@ class Block:
 
 def split(page):
     """
-    Split a page into prose and blocks.
+    Split a page into its parts.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def split(page):
     Returns
     -------
     list of str or Block
-        In order; `join` is the inverse.
+        In their order; `join` is the inverse.
 
     """
     parts, end = [], 0
@@ -46,7 +46,7 @@ def split(page):
 
 
 def join(parts):
-    """Return the page of these parts."""
+    """Join the parts of a page."""
     return ''.join(part if isinstance(part, str) else _fenced(part) for part in parts)
 
 

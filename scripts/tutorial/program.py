@@ -1,4 +1,4 @@
-"""A program of the tutorial as a process, and its printed lines."""
+"""A program of the tutorial in a separate process, and the lines that it prints."""
 
 import os
 import queue
@@ -9,20 +9,20 @@ import sys
 import threading
 import time
 
-TIMEOUT = 60.0  # s, of a line: a busy machine takes long to start a node
+PATIENCE = 60.0  # s; a busy machine starts a node slowly
 
 
 class Program:
-    """A command of the page, started as a user starts it."""
+    """A command of the page, started as by a user."""
 
     def __init__(self, command, folder):
         """
-        Start the program.
+        Start it.
 
         Parameters
         ----------
         command : str
-            Begins with `python`; the current interpreter runs it.
+            Begins with `python`, replaced by the running interpreter.
         folder : Path
             Working directory.
 
@@ -45,7 +45,7 @@ class Program:
 
     def next_line(self, fits):
         """
-        Return the next line that fits, skipping others.
+        Return the next fitting line, and skip all others.
 
         Parameters
         ----------
@@ -58,10 +58,10 @@ class Program:
         Raises
         ------
         AssertionError
-            If none is printed within TIMEOUT; with the skipped lines.
+            If none comes within PATIENCE seconds; lists the skipped lines.
 
         """
-        passed, end = [], time.monotonic() + TIMEOUT
+        passed, end = [], time.monotonic() + PATIENCE
         while (left := end - time.monotonic()) > 0:
             try:
                 line = self._lines.get(timeout=left)
@@ -70,10 +70,10 @@ class Program:
             if fits(line):
                 return line
             passed.append(line)
-        raise AssertionError('the line did not come; these did:\n' + '\n'.join(passed))
+        raise AssertionError('expected line missing, got:\n' + '\n'.join(passed))
 
     def stop(self):
-        """Send SIGINT, and wait for the end; return the exit code."""
+        """Press Ctrl-C, and wait for the end; returns the exit code."""
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGINT)
         try:

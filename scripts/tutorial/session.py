@@ -1,4 +1,4 @@
-"""Runs all blocks of the page, and puts their output into it."""
+"""Runs the page from its first block to its last, and records the output in it."""
 
 import contextlib
 import io
@@ -12,12 +12,12 @@ from .program import Program
 ROOT = Path(__file__).resolve().parents[2]
 _STAMP = re.compile(r'\[\d{9,}\.\d+\]')
 _NUMBER = re.compile(r'-?\d+\.\d+(?:e[-+]?\d+)?')
-# A stated line that ends with this fits any line that contains its beginning.
+# A stated line with this end fits every line that contains the text before it.
 REST = ' ...'
 
 
 class Session:
-    """The running programs, and the namespace of the Python blocks."""
+    """The running programs, and the names of the Python session."""
 
     def __init__(self):
         self._programs = {}
@@ -31,12 +31,12 @@ class Session:
         Parameters
         ----------
         parts : list of str or Block
-            From `page.split`.
+            As `page.split` returns them.
 
         Returns
         -------
         list of str or Block
-            The same parts with the current output.
+            The same parts with the present output.
 
         """
         before = Path.cwd()
@@ -91,14 +91,14 @@ class Session:
 
 
 def fits(stated, line):
-    """Return whether a line is the stated one, except for stamp and decimal numbers."""
+    """Return whether a line is the stated one, but for its stamp and the size of its numbers."""
     if stated.endswith(REST):
         return stated.removesuffix(REST) in line
     return shape(stated) == shape(line)
 
 
 def shape(text):
-    """Return a text with placeholders for stamps and decimal numbers."""
+    """Return a text without stamps and without the value of its decimal numbers."""
     return _NUMBER.sub('#', _STAMP.sub('[stamp]', text))
 
 

@@ -8,9 +8,10 @@ import time
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node import RobotModel
+from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.node import _limiter
 from dynamics_node.ros.parameters.table import check_all
-from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.ros.torque_path.command_output import CommandOutput, output_settings
 from dynamics_node.safety.effort_output import MAX_RAMP_STEP
 import numpy as np
@@ -140,7 +141,7 @@ def test_a_timeout_that_becomes_shorter_holds_at_once(client, start):
 
 
 def test_a_listener_more_is_noticed_at_once_and_one_less_is_none(client):
-    output = CommandOutput(client.node, check_all({}), lambda: None)
+    output = CommandOutput(NodeContext(client.node, check_all({})), lambda: None)
     first = client.node.create_subscription(Float64MultiArray, TOPIC, lambda _: None, 1)
     client.until(output.has_new_listener)
     client.during(0.1)
@@ -154,9 +155,9 @@ def test_a_listener_more_is_noticed_at_once_and_one_less_is_none(client):
 
 
 def test_parameters_set_without_end_do_not_put_the_watchdog_off(client):
-    robot = Robot(RobotModel.from_urdf(PENDULUM), ())
+    robot = ActiveRobot(RobotModel.from_urdf(PENDULUM), ())
     values = check_all({})
-    output = CommandOutput(client.node, values, lambda: None)
+    output = CommandOutput(NodeContext(client.node, values), lambda: None)
     output.path.use(robot.buffer)
     output.path.configure(
         time.monotonic(),

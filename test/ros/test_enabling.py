@@ -6,9 +6,10 @@ from types import SimpleNamespace
 
 from dynamics_node import RobotModel
 from dynamics_node.kernels.warm_up import warm_up
+from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.node import _limiter
 from dynamics_node.ros.parameters.table import check_all
-from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.ros.torque_path.enabling import Enabling
 from dynamics_node.safety import OutputSettings, TorquePath
 import pytest
@@ -65,8 +66,12 @@ class Controllers:
 class Parts(SimpleNamespace):
     """An `Enabling` and what it uses."""
 
+    @property
+    def robot(self):
+        return self.context.robot
+
     def use(self, model, joints=()):
-        self.robot = Robot(model, joints)
+        self.context.robot = ActiveRobot(model, joints)
         self.output.path.use(self.robot.buffer)
         self.output.path.configure(
             time.monotonic(),
@@ -116,19 +121,19 @@ def parts(client):
         def __getitem__(self, name):
             return self.values[name]
 
+    parameters = Parameters()
     parts = Parts(
         client=client,
+        context=NodeContext(client.node, parameters),
         output=Output(),
         controllers=Controllers(),
         conflicts=[],
         descriptions=[],
-        parameters=Parameters(),
+        parameters=parameters,
     )
     parts.use(RobotModel.from_urdf(PENDULUM))
     parts.enabling = Enabling(
-        client.node,
-        parts.parameters,
-        lambda: parts.robot,
+        parts.context,
         parts.output,
         SimpleNamespace(
             conflicts=lambda: parts.conflicts, description_conflicts=lambda: parts.descriptions

@@ -8,8 +8,9 @@ import types
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamics_node import RobotModel
+from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.publishers.external_torque import ExternalTorque
-from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.safety import RejectedStateError
 import numpy as np
 import pytest
@@ -325,16 +326,14 @@ class Direct:
     """The publisher and a robot, and states that are put into its buffer."""
 
     def __init__(self, client, urdf=NEEDLE, joints=()):
-        self.robot = Robot(RobotModel.from_urdf(urdf), joints)
+        self.robot = ActiveRobot(RobotModel.from_urdf(urdf), joints)
         self.parameters = {'publish_external_torque': True, 'external_torque.gain': 100.0}
         self.messages = []
         publisher = types.SimpleNamespace(publish=self.messages.append)
-        self.unit = ExternalTorque(
-            types.SimpleNamespace(
-                get_logger=client.node.get_logger, create_publisher=lambda *_, **__: publisher
-            ),
-            self.parameters,
+        node = types.SimpleNamespace(
+            get_logger=client.node.get_logger, create_publisher=lambda *_, **__: publisher
         )
+        self.unit = ExternalTorque(NodeContext(node, self.parameters))
         assert self.unit.configure()
 
     def state(self, time, position=0.0, effort=0.0):
@@ -380,7 +379,7 @@ def jump(direct):
 
 
 def other_robot(direct):
-    direct.robot = Robot(RobotModel.from_urdf(NEEDLE), ())
+    direct.robot = ActiveRobot(RobotModel.from_urdf(NEEDLE), ())
 
 
 def other_gain(direct):

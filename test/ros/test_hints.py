@@ -3,9 +3,10 @@
 from types import SimpleNamespace
 
 from dynamics_node import RobotModel
+from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.support.description_source import DescriptionSource
 from dynamics_node.ros.support.hints import Hints, mismatches, PATIENCE, REPEAT_EVERY, unheard
-from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.safety import RejectedStateError
 import numpy as np
 import pytest
@@ -37,22 +38,22 @@ class Waiting:
         node = self.client.node
         node.destroy_publisher(self.client.states)
         node.destroy_publisher(self.client.description)
-        self.robot, self.time = None, 0.0
-        source = DescriptionSource(node, NO_DESCRIPTION, lambda *_: True)
+        self.time, self.context = 0.0, NodeContext(node, NO_DESCRIPTION)
+        source = DescriptionSource(self.context, lambda *_: True)
         source.begin()
         subscription = node.create_subscription(
             JointState, 'joint_states', lambda _: None, qos_profile_sensor_data
         )
         states = SimpleNamespace(subscription=subscription, topic=subscription.topic_name)
-        self.hints = Hints(node, lambda: self.robot, source, states, lambda: self.time)
+        self.hints = Hints(self.context, source, states, lambda: self.time)
 
     def describe(self, names=()):
         """Take the description of arm7, of which joints are wanted."""
-        self.robot = Robot(ARM, names)
+        self.context.robot = ActiveRobot(ARM, names)
 
     def feed(self, names, position=None):
         """Take a joint state."""
-        self.robot.buffer.update(
+        self.context.robot.buffer.update(
             self.time, list(names), [0.1] * len(names) if position is None else position
         )
 

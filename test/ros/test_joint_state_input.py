@@ -3,9 +3,10 @@
 from types import SimpleNamespace
 
 from dynamics_node import RobotModel
+from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.parameters.table import check_all
-from dynamics_node.ros.torque_path.active_robot import Robot
-from dynamics_node.ros.torque_path.joint_state_input import StateInput, WARN_EVERY
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
+from dynamics_node.ros.torque_path.joint_state_input import JointStateInput, WARN_EVERY
 from dynamics_node.safety import EffortLimiter, OutputSettings, TorquePath
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ class Receiver:
                 for name, value in overrides.items()
             ],
         )
-        self.robot = Robot(RobotModel.from_urdf(LIMITED), ())
+        self.robot = ActiveRobot(RobotModel.from_urdf(LIMITED), ())
         # A busy machine may take its time from one process to the other.
         settings = OutputSettings(5.0, 0.0, 0.0, 'ramp_to_zero')
         self.path = TorquePath(settings)
@@ -47,9 +48,8 @@ class Receiver:
         self.received, self.errors, self.warnings = [], [], []
         node = self.client.node
         node.destroy_publisher(self.client.states)
-        self.input = StateInput(
-            node,
-            {'allow_several_state_publishers': False},
+        self.input = JointStateInput(
+            NodeContext(node, {'allow_several_state_publishers': False}),
             SimpleNamespace(path=self.path),
             self,
             raw,

@@ -4,7 +4,7 @@ from dynamics_node import RobotModel
 from dynamics_node.ros.parameters.live_change_check import check_change
 from dynamics_node.ros.parameters.model_settings import configured
 from dynamics_node.ros.parameters.table import check_all, ParameterError
-from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.safety import GravityChange
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def payload(mass, link='hand', com=(0.03, 0.0, 0.0)):
 
 def change(before, after, urdf=ARM7):
     """Go from parameters to others, given what differs from the defaults."""
-    robot = Robot(RobotModel.from_urdf(urdf), ())
+    robot = ActiveRobot(RobotModel.from_urdf(urdf), ())
     before = check_all(before)
     robot.configure(before)
     robot.buffer.update(0.0, list(robot.joint_names), Q[: len(robot.joint_names)])
@@ -112,7 +112,7 @@ def test_the_payload_of_the_test_turns_the_torque_round():
 
 
 def test_a_torque_that_is_no_number_is_above_every_limit():
-    robot, values = Robot(RobotModel.from_urdf(ARM7), ()), check_all({})
+    robot, values = ActiveRobot(RobotModel.from_urdf(ARM7), ()), check_all({})
     robot.buffer.update(0.0, list(robot.joint_names), Q)
     with np.errstate(over='ignore'):
         heavy = robot.model.with_payload('hand', 1e308, (0.0, 0.0, 0.06))

@@ -3,7 +3,7 @@
 from dynamics_node import ArgumentError, InertiaError, RobotModel
 from dynamics_node.ros.parameters.model_settings import configured, tensor
 from dynamics_node.ros.parameters.table import check_all
-from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 import numpy as np
 import pytest
 from support.robots import ARM7
@@ -17,7 +17,7 @@ PAYLOAD = {'payload.link': 'hand', 'payload.mass': 2.0}
 def made(**values):
     """Return the model of an arm with some parameters, dots written as double underscores."""
     return configured(
-        Robot(ARM, CHOSEN),
+        ActiveRobot(ARM, CHOSEN),
         check_all({name.replace('__', '.'): value for name, value in values.items()}),
     )
 
@@ -85,7 +85,7 @@ def test_one_smoothing_velocity_is_for_all_chosen_joints():
 
 
 def test_only_what_differs_is_done_anew():
-    robot, before = Robot(ARM, ()), check_all(PAYLOAD)
+    robot, before = ActiveRobot(ARM, ()), check_all(PAYLOAD)
     robot.configure(before)
     loaded = robot.model
     robot.configure({**before, 'state_timeout': 0.5}, before)

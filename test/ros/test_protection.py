@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.torque_path.protection import Protection
 import pytest
 
@@ -61,11 +62,10 @@ def parts():
         get_logger=lambda: SimpleNamespace(error=parts.errors.append),
     )
     parts.unit = Protection(
-        node,
+        NodeContext(node, {}, SimpleNamespace(joint_names=('a',))),
         SimpleNamespace(path=path),
         SimpleNamespace(conflicts=lambda: parts.conflicts),
         controllers,
-        lambda: SimpleNamespace(joint_names=('a',)),
     )
     return parts
 

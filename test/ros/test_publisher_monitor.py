@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.torque_path.publisher_monitor import PublisherMonitor
 from std_msgs.msg import Float64MultiArray, String
 from support.processes import Client
@@ -14,7 +15,8 @@ def monitor(client, states=None, allow=False):
         count_publishers=lambda: client.node.count_publishers('/joint_states'),
     )
     source = SimpleNamespace(topic='/described')
-    return PublisherMonitor(client.node, '/efforts', states, source, allow)
+    context = NodeContext(client.node, {'allow_several_state_publishers': allow})
+    return PublisherMonitor(context, '/efforts', states, source)
 
 
 def test_other_sources_of_efforts_and_states_are_named(client):

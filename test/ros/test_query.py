@@ -3,7 +3,7 @@
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node import ArgumentError, RobotModel
 from dynamics_node.ros.services.query import finite, Query
-from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 import numpy as np
 import pytest
 from support.robots import ARM7
@@ -13,7 +13,7 @@ CHOSEN = tuple(MODEL.joint_names[i] for i in (4, 2))
 
 
 def test_parts_blocks_and_columns_are_those_of_the_wanted_joints():
-    robot = Robot(MODEL, CHOSEN)
+    robot = ActiveRobot(MODEL, CHOSEN)
     query = Query(robot, GetDynamics.Request(joint_names=CHOSEN[::-1], position=[0.1, 0.2]), 1.0)
     assert query.names == list(CHOSEN[::-1])
     assert query.q[[4, 2]].tolist() == [0.2, 0.1]

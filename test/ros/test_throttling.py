@@ -2,13 +2,13 @@
 
 import time
 
-from dynamics_node.ros.support.throttling import ASK_EVERY, Listened, Rate, Throttle
+from dynamics_node.ros.support.throttling import ASK_EVERY, HasSubscribers, Rate, Throttle
 from std_msgs.msg import String
 
 
 def test_a_listener_is_noticed_soon_after_it_was_matched_and_soon_after_it_left(client):
     publisher = client.node.create_publisher(String, 'listened', 1)
-    listened = Listened(publisher)
+    listened = HasSubscribers(publisher)
     assert not listened
     subscription = client.node.create_subscription(String, 'listened', lambda _: None, 1)
     client.until(publisher.get_subscription_count)
@@ -29,7 +29,7 @@ def test_the_middleware_is_not_asked_for_every_message():
             return 1
 
     publisher = Publisher()
-    listened = Listened(publisher, period=3600.0)
+    listened = HasSubscribers(publisher, period=3600.0)
     assert all(bool(listened) for _ in range(100))
     assert publisher.asked == 1
 

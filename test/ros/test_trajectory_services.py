@@ -4,9 +4,10 @@ import types
 
 from dynamics_interfaces.srv import ComputeTrajectoryEffort, GetMaxPayload
 from dynamics_node import RobotModel
+from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.parameters.table import check_all
 from dynamics_node.ros.services.trajectory_services import MOST_WHILE_DRIVING, TrajectoryServices
-from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from geometry_msgs.msg import Point
 import numpy as np
 import pytest
@@ -235,8 +236,9 @@ def test_what_is_no_trajectory_is_refused_in_words(shared):
 
 def test_a_long_one_is_refused_while_efforts_are_sent():
     node = types.SimpleNamespace(get_logger=lambda: None, create_service=lambda *_, **__: None)
-    robot, is_driving = Robot(ARM, ()), True
-    services = TrajectoryServices(node, lambda: robot, check_all({}), lambda: is_driving)
+    path = types.SimpleNamespace(is_on=True)
+    context = NodeContext(node, check_all({}), ActiveRobot(ARM, ()))
+    services = TrajectoryServices(context, path)
     time = np.arange(MOST_WHILE_DRIVING + 1.0)
     trajectory = message(time, *motion(time))
 
@@ -249,9 +251,9 @@ def test_a_long_one_is_refused_while_efforts_are_sent():
     refused = answer()
     assert not refused.success
     assert 'expected at most 1000 points while the output is on' in refused.message
-    is_driving = False
+    path.is_on = False
     assert answer().success
-    is_driving = True
+    path.is_on = True
     trajectory.points.pop()
     assert answer().success
 

@@ -42,10 +42,10 @@ def _introduction(rows, left_out):
             '',
             _text(
                 'How far D, C, G, inverse dynamics (ID), forward dynamics (FD) and the energies '
-                'of `RobotModel` are from those of others, on every URDF of the package '
+                'of `RobotModel` differ from other implementations, on every URDF of the package '
                 f'`example-robot-data`: {len(rows)} robots are compared, {len(left_out)} are left '
-                'out, with reasons. Every robot stands on its root link, whatever it does in '
-                'life. Each judge reads the file itself:'
+                'out, with reasons. Every robot is fixed at its root link, including legged and '
+                'flying ones. Each reference reads the file itself:'
             ),
             '',
             _text(
@@ -56,22 +56,22 @@ def _introduction(rows, left_out):
                 '- **MuJoCo**, a physics engine, without contacts, limits, damping and friction;'
             ),
             _text(
-                '- **80 bits**: the sums of [the mathematics](mathematics.md), section 3, written '
-                'out in arithmetic with 2000 times less rounding. It says who is wrong where '
-                'others differ.'
+                '- **80 bits**: the sums of [the mathematics](mathematics.md), section 3, '
+                'computed literally in arithmetic with 2000 times less rounding. It decides which '
+                'result is wrong if two differ.'
             ),
             '',
             _text(
                 f'A figure is the largest relative error of any element at {STATES} random '
                 'states, all joints moving: the difference divided by the element, or by '
-                f'{CANCELLED} of what the element is summed from (by Cauchy and Schwarz) where '
-                f'the sum cancels to less than that. Promised is {_number(BOUND)}. With mimic '
-                'joints, the accelerations of the judges are solved from their own D and bias.'
+                f'{CANCELLED} of the size of its summands (by Cauchy and Schwarz) if they cancel '
+                f'to less than that. The bound is {_number(BOUND)}. With mimic joints, the '
+                'accelerations of the references are solved from their own D and bias.'
             ),
             '',
             _text(
-                'Written by `scripts/write_accuracy.py`. `make test` measures everything anew and '
-                'fails if this page is no longer true.'
+                'Written by `scripts/write_accuracy.py`. `make test` measures everything again '
+                'and fails if this page is no longer true.'
             ),
         ]
     )
@@ -81,7 +81,7 @@ def _robots(rows):
     lines = [
         '## Public robots',
         '',
-        'Six columns against Pinocchio; against MuJoCo and 80 bits the worst of the six.',
+        'Six columns against Pinocchio; against MuJoCo and 80 bits, the worst of the six.',
         '',
         '| robot | joints | D | C | G | ID | FD | energy | MuJoCo | 80 bits |',
         '|---|---|---|---|---|---|---|---|---|---|',
@@ -119,10 +119,10 @@ def _left_out(left_out):
 
 def _judges(rows):
     lines = [
-        '## Who is wrong',
+        '## Which result is wrong',
         '',
-        f'Every difference from Pinocchio above {_number(BOUND)}, and how far each route is '
-        'from 80 bits there:',
+        f'Every difference from Pinocchio above {_number(BOUND)}, and the error of each against '
+        '80 bits there:',
         '',
         '| robot | what | ours | Pinocchio | MuJoCo |',
         '|---|---|---|---|---|',
@@ -148,26 +148,26 @@ def _judges(rows):
             *lines,
             '',
             _text(
-                '- Pinocchio sums its C in the base frame, and MuJoCo everything about the center '
-                'of mass of the whole robot; a light link far from there loses digits in the '
-                'difference of large moments. Here each joint has a frame of its own.'
+                '- Pinocchio sums its C in the base frame, and MuJoCo sums all quantities about '
+                'the center of mass of the whole robot; a light link far from there loses digits '
+                'in the difference of large moments. Here each joint has its own frame.'
             ),
             _text(
-                '- MuJoCo has no C. Its bias at several speeds gives the Christoffel matrix as a '
-                'difference, which costs some more digits.'
+                '- MuJoCo has no C. The Christoffel matrix is a difference of its bias at several '
+                'speeds, which costs some more digits.'
             ),
             _text(
-                f'- MuJoCo refuses links of {len(refused)} of these robots, for inertia that no '
-                'body has or moving links without mass. There it computes with the numbers of the '
-                'file written into its model.'
+                f'- MuJoCo refuses links of {len(refused)} of these robots, because of physically '
+                'impossible inertia or moving links without mass. For these, the numbers of the '
+                'file are written into its model.'
             ),
             _text(
-                f'- FD is undefined on {", ".join(idle)}: a joint moves nothing that has inertia. '
-                '`forward_dynamics` says so.'
+                f'- FD is undefined on {", ".join(idle)}: a joint moves no inertia. '
+                '`forward_dynamics` raises an error.'
             ),
             _text(
-                '- Plain relative errors of the largest acceleration are larger where D is badly '
-                f'conditioned: the worst is {_short(hard.name)} (condition '
+                '- Plain relative errors of the largest acceleration are larger if D is '
+                f'ill-conditioned: the worst is {_short(hard.name)} (condition '
                 f'{_number(hard.condition)}) with {_number(hard.plain["library"])} for ours, '
                 f'{_number(hard.plain["pinocchio"])} for Pinocchio and '
                 f'{_number(hard.plain["mujoco"])} for MuJoCo.'
@@ -180,8 +180,8 @@ def _extremes(rows):
     lines = [
         '## Extreme robots',
         '',
-        'Against 80 bits: ours in six columns, and the worst of the six of the others. No '
-        'answer is NaN.',
+        'Against 80 bits: ours in six columns, the worst of the six for the others. No result '
+        'is NaN.',
         '',
         '| robot | condition of D | D | C | G | ID | FD | energy | Pinocchio | MuJoCo |',
         '|---|---|---|---|---|---|---|---|---|---|',
@@ -198,9 +198,9 @@ def _extremes(rows):
             *lines,
             '',
             _text(
-                'At the end of a boom the speed of the tip, times the first moment of what hangs '
-                'there, cancels in C, unless velocities count from each joint, as they do here: '
-                'equation (24) of [the mathematics](mathematics.md).'
+                "At the end of a boom, the product of the tip's speed and the first moment of its "
+                'load cancels in C. This costs digits unless velocities count from each joint, as '
+                'here: equation (24) of [the mathematics](mathematics.md).'
             ),
         ]
     )
@@ -211,11 +211,12 @@ def _swings():
         '## A free swing',
         '',
         _text(
-            f'An arm let go from rest for {SECONDS:g} s with its fingers fixed, without efforts '
+            f'An arm released from rest for {SECONDS:g} s with its fingers fixed, without efforts '
             'and without damping, integrated with `forward_dynamics` (DOP853, tolerance '
             f'{_number(TOLERANCE)} per step). Drift: the largest change of the total energy, '
-            'divided by the largest kinetic energy; it is that of the integrator and shrinks with '
-            f'its tolerance. MuJoCo: the error of the acceleration at {SAMPLES} states on the way.'
+            'divided by the largest kinetic energy; it comes from the integrator and shrinks with '
+            f'its tolerance. MuJoCo: the error of the acceleration at {SAMPLES} states of the '
+            'motion.'
         ),
         '',
         '| arm | largest kinetic energy, J | drift | acceleration against MuJoCo |',

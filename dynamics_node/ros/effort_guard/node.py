@@ -19,7 +19,7 @@ from ..parameters.declaration import declare, ParameterError
 from ..support.callback_errors import logged
 from ..support.qos import COMMAND, NO_EVENTS, OUTPUT_STATE, RESULT
 from ..support.throttling import Throttle
-from ...safety.effort_guard import EffortGuard, GuardSettings, LOOK_EVERY, PERIODS
+from ...safety.effort_guard import EffortGuard, GuardSettings, MAX_TICK, PERIODS
 
 # How often the guard looks at the graph, s: who sends, who listens.
 GRAPH_EVERY = 0.5
@@ -86,7 +86,7 @@ class EffortGuardNode(Node):
         )
         self._controller = ControllerParameters(self, self._output)
         # On the steady clock: it must watch while simulation time stands still.
-        self._look_timer = self.create_timer(LOOK_EVERY, self._look, clock=steady)
+        self._look_timer = self.create_timer(MAX_TICK, self._look, clock=steady)
         self.create_timer(GRAPH_EVERY, self._look_at_graph, clock=steady)
         self.create_timer(1.0, self._every_second, clock=steady)
         self._reset_service = self.create_service(Trigger, '~/reset', self._reset)
@@ -146,7 +146,7 @@ class EffortGuardNode(Node):
     @logged
     def _look(self):
         try:
-            output = self.guard.look(time.monotonic())
+            output = self.guard.tick(time.monotonic())
             if output is not None:
                 self._publish(output)
         finally:
@@ -157,7 +157,9 @@ class EffortGuardNode(Node):
         self._publisher.publish(Float64MultiArray(layout=self._layout, data=array('d', output)))
 
     def _look_again(self):
-        self._look_timer.timer_period_ns = math.ceil(self.guard.next_look(time.monotonic()) * 1e9)
+        self._look_timer.timer_period_ns = math.ceil(
+            self.guard.next_tick_in(time.monotonic()) * 1e9
+        )
         self._look_timer.reset()
 
     def _changed(self, state, reason):

@@ -7,11 +7,9 @@ from typing import Any
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.parameter import Parameter as RosParameter
 
+from ...errors import ParameterError
+
 DOUBLE, DOUBLES, TEXT, TEXTS, FLAG = 'double', 'double[]', 'string', 'string[]', 'bool'
-
-
-class ParameterError(ValueError):
-    """A parameter value is refused; the message says what is expected and what came."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ def check_change(robot, model, values, before, gravity_change, now):
 
     Parameters
     ----------
-    robot : Robot
+    robot : ActiveRobot
         With the model and the state in force.
     model : RobotModel
         As it would become.

@@ -33,7 +33,7 @@ def configured(robot, values, before=None):
 
     Parameters
     ----------
-    robot : Robot
+    robot : ActiveRobot
     values : dict of str to Any
         Of the parameters; arrays per joint are in the order of the chosen joints.
     before : dict of str to Any, optional

@@ -12,27 +12,25 @@ from ..support.throttling import Rate
 class Diagnostics:
     """Publishes the node's health once a second and on every change of the output."""
 
-    def __init__(self, node, parameters, get_robot, states, output, external_torque):
+    def __init__(self, context, states, output, external_torque):
         """
         Create the publisher.
 
         Parameters
         ----------
-        node : rclpy.node.Node
-        parameters : Parameters
-        get_robot : callable() -> Robot or None
-        states : StateInput
+        context : NodeContext
+        states : JointStateInput
         output : CommandOutput
         external_torque : ExternalTorque
 
         """
-        self._node = node
-        self._parameters = parameters
-        self._get_robot = get_robot
+        self._context = context
+        self._node = context.node
+        self._parameters = context.parameters
         self._states = states
         self._output = output
         self._external_torque = external_torque
-        self._publisher = node.create_publisher(
+        self._publisher = context.node.create_publisher(
             DiagnosticArray, '/diagnostics', RESULT, event_callbacks=NO_EVENTS
         )
         self._state_rate = Rate()
@@ -40,7 +38,7 @@ class Diagnostics:
 
     def measure(self):
         """Update the rates; called once a second."""
-        now, robot = time.monotonic(), self._get_robot()
+        now, robot = time.monotonic(), self._context.robot
         self._state_rate.measure(now, robot.buffer.accepted if robot else 0)
         self._command_rate.measure(now, self._output.commands)
 
@@ -59,7 +57,7 @@ class Diagnostics:
         self._publisher.publish(message)
 
     def _model(self):
-        robot = self._get_robot()
+        robot = self._context.robot
         if robot is None:
             return self._status('model', DiagnosticStatus.WARN, 'no robot description', {})
         warnings = robot.model.warnings
@@ -79,7 +77,7 @@ class Diagnostics:
         )
 
     def _joint_states(self):
-        robot = self._get_robot()
+        robot = self._context.robot
         if robot is None:
             return self._status('joint states', DiagnosticStatus.WARN, 'no robot description', {})
         now, timeout = time.monotonic(), self._parameters['state_timeout']
@@ -117,7 +115,7 @@ class Diagnostics:
         level, text = DiagnosticStatus.OK, 'on' if machine.is_on else 'off'
         if machine.is_on and limiter.is_saturated:
             level, text = DiagnosticStatus.WARN, f'above the limit: {limiter.saturation()}'
-        robot = self._get_robot()
+        robot = self._context.robot
         names = robot.joint_names if robot else ()
         return self._status(
             'output',

@@ -11,7 +11,7 @@ from ..support.qos import NO_EVENTS, RESULT
 from ..support.throttling import Throttle
 from ...dynamics import MomentumObserver
 from ...dynamics.momentum_observer import LONGEST_STEP
-from ...safety import EffortAtRest
+from ...safety import EffortPlausibility
 
 # The shortest time between two warnings about the same thing, s.
 WARN_EVERY = 10.0
@@ -37,19 +37,18 @@ class ExternalTorque:
 
     """
 
-    def __init__(self, node, parameters):
+    def __init__(self, context):
         """
         Create the publisher; off until `configure`.
 
         Parameters
         ----------
-        node : rclpy.node.Node
-        parameters : Parameters
+        context : NodeContext
 
         """
-        self.logger = node.get_logger()
-        self._parameters = parameters
-        self._publisher = node.create_publisher(
+        self.logger = context.logger
+        self._parameters = context.parameters
+        self._publisher = context.node.create_publisher(
             JointState, '~/external_torque', RESULT, event_callbacks=NO_EVENTS
         )
         self._warnings = {what: Throttle(WARN_EVERY) for what in (*_TO_DO, 'rate', 'doubt')}
@@ -80,7 +79,7 @@ class ExternalTorque:
 
         Parameters
         ----------
-        robot : Robot
+        robot : ActiveRobot
             With that state in its buffer.
         stamp : builtin_interfaces.msg.Time
             Of the state, or of its arrival if it says none.
@@ -102,7 +101,7 @@ class ExternalTorque:
             return
         estimate = watch.observer.update(watch.seconds, q, qd, effort)
         if watch.at_rest.update(watch.seconds, qd[index], effort, gravity_torque):
-            self._warn_of(watch.at_rest.doubt)
+            self._warn_of(watch.at_rest.warning)
         if watch.observer.observed == 0.0:
             self._begun += 1
             self._notice_rare(watch)
@@ -121,7 +120,7 @@ class ExternalTorque:
         values : dict of str to str
 
         """
-        doubt = self._watch.at_rest.doubt if self._watch else ''
+        doubt = self._watch.at_rest.warning if self._watch else ''
         return self._missing or doubt, {
             'published': str(self.published),
             'begun': str(self._begun),
@@ -185,7 +184,7 @@ class _Watch:
     Attributes
     ----------
     observer : MomentumObserver
-    at_rest : EffortAtRest
+    at_rest : EffortPlausibility
     time, newest : int
         Of the newest state, ns: when the oldest and the newest of its joints was measured.
     begins : int
@@ -200,11 +199,11 @@ class _Watch:
         self._robot, self._what = robot, (robot.buffer.breaks, gain)
         self._model = robot.model
         self.observer = MomentumObserver(robot.model, gain, robot.joint_names)
-        self.at_rest = EffortAtRest(
+        self.at_rest = EffortPlausibility(
             robot.joint_names, robot.model.effort_limits[robot.selection.index]
         )
         if before is not None and before.at_rest.names == self.at_rest.names:
-            self.at_rest.doubt = before.at_rest.doubt
+            self.at_rest.warning = before.at_rest.warning
         # Seconds since then have digits enough, those since 1970 have not.
         self._epoch = self.time = self.newest = time
         self.begins = 0

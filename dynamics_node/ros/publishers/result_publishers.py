@@ -6,31 +6,30 @@ from sensor_msgs.msg import JointState
 
 from ..support.messages import to_field
 from ..support.qos import NO_EVENTS, RESULT
-from ..support.throttling import Listened
+from ..support.throttling import HasSubscribers
 
 
-class Results:
+class ResultPublishers:
     """Publishes ~/gravity_torque and ~/dynamics while somebody listens."""
 
-    def __init__(self, node, parameters):
+    def __init__(self, context):
         """
         Create the publishers.
 
         Parameters
         ----------
-        node : rclpy.node.Node
-        parameters : Parameters
+        context : NodeContext
 
         """
-        self._parameters = parameters
+        node, self._parameters = context.node, context.parameters
         self._gravity = node.create_publisher(
             JointState, '~/gravity_torque', RESULT, event_callbacks=NO_EVENTS
         )
         self._dynamics = node.create_publisher(
             JointDynamics, '~/dynamics', RESULT, event_callbacks=NO_EVENTS
         )
-        self._is_gravity_wanted = Listened(self._gravity)
-        self._is_dynamics_wanted = Listened(self._dynamics)
+        self._is_gravity_wanted = HasSubscribers(self._gravity)
+        self._is_dynamics_wanted = HasSubscribers(self._dynamics)
 
     def publish(self, robot, stamp, effort):
         """
@@ -38,7 +37,7 @@ class Results:
 
         Parameters
         ----------
-        robot : Robot
+        robot : ActiveRobot
             With that state in its buffer.
         stamp : builtin_interfaces.msg.Time
             Of the state.

@@ -1,11 +1,21 @@
-"""What all services about the robot have in common: how they answer, and how they refuse."""
+"""How services about the robot are declared, answered and refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import functools
+from typing import Any
 
 import numpy as np
 
+from .query import Query
+from ..context import NodeContext
 from ..parameters.table import ParameterError
+from ..support.callback_errors import guarded_service
+from ..torque_path.active_robot import ActiveRobot
 from ...errors import DynamicsError
 
-# Numbers that are no arrays: 0 would be a value.
+# Response fields that are one number: in a refusal they are NaN, because 0 would be a value.
 _NUMBERS = ('kinetic_energy', 'potential_energy', 'mass')
 
 
@@ -13,46 +23,29 @@ class NoRobotError(DynamicsError):
     """No robot description has been accepted yet."""
 
 
-class Answering:
+class RobotServices:
     """
-    A group of services that answer success, message and, if it succeeded, the rest.
+    A group of services of the node: every method that `service` or `state_service` decorates.
 
-    A request that fails is answered with success = false, a message that says why and empty
+    A request that cannot be answered gets success = false, a message that says why, and empty
     arrays.
 
+    Attributes
+    ----------
+    context : NodeContext
+    parameters : Parameters
+
     """
 
-    def __init__(self, node, get_robot, parameters):
-        """
-        Keep what every service needs.
+    def __init__(self, context: NodeContext) -> None:
+        self.context = context
+        self.parameters = context.parameters
+        self.logger = context.logger
+        for name in sorted(vars(type(self))):
+            if kind := getattr(getattr(type(self), name), 'service_type', None):
+                context.node.create_service(kind, f'~/{name}', getattr(self, name))
 
-        Parameters
-        ----------
-        node : rclpy.node.Node
-        get_robot : callable() -> Robot or None
-        parameters : Parameters
-
-        """
-        self.logger = node.get_logger()
-        self.parameters = parameters
-        self._get_robot = get_robot
-        self._node = node
-
-    def serve(self, kind, name, callback):
-        """
-        Create a private service.
-
-        Parameters
-        ----------
-        kind : type
-            Of the service.
-        name : str
-        callback : callable(request, response) -> response
-
-        """
-        self._node.create_service(kind, f'~/{name}', callback)
-
-    def robot(self):
+    def robot(self) -> ActiveRobot:
         """
         Return the robot in force.
 
@@ -62,44 +55,83 @@ class Answering:
             If there is none yet; says what to do.
 
         """
-        robot = self._get_robot()
-        if robot is None:
+        if self.context.robot is None:
             raise NoRobotError(
                 'no robot description yet: publish robot_description, or set the '
                 'parameter robot_description_file'
             )
-        return robot
+        return self.context.robot
 
-    def failed(self, response, message):
-        """Make a new response the answer to a request that failed."""
+    def failed(self, response: Any, message: str) -> Any:
+        """Return a response, which nothing has filled yet, as the refusal of a request."""
         response.success = False
         response.message = message
         for name in _NUMBERS:
             if hasattr(response, name):
                 setattr(response, name, np.nan)
+        return self.completed(response)
+
+    def completed(self, response: Any) -> Any:
+        """Return the response with what every answer has, also a refusal; by default nothing."""
         return response
 
-    def answer(self, response, fill):
-        """
-        Answer a request.
 
-        Parameters
-        ----------
-        response : object
-            Of the service.
-        fill : callable() -> str
-            Fills the response and returns its message, or raises DynamicsError or
-            ParameterError.
+def service(kind: type) -> Callable:
+    """
+    Declare a method of `RobotServices` as the service `~/<its name>`.
 
-        Returns
-        -------
-        object
-            The response, or a new one that says why not.
+    The method is called with request and response, fills the response and returns its message,
+    or raises DynamicsError or ParameterError, which become the refusal.
 
-        """
-        try:
-            response.message = fill()
-        except (DynamicsError, ParameterError) as error:
-            return self.failed(type(response)(), str(error))
-        response.success = True
-        return response
+    Parameters
+    ----------
+    kind : type
+        Service type.
+
+    """
+
+    def declare(method: Callable) -> Callable:
+        @guarded_service
+        @functools.wraps(method)
+        def answer(self: RobotServices, request: Any, response: Any) -> Any:
+            try:
+                response.message = method(self, request, response)
+            except (DynamicsError, ParameterError) as error:
+                return self.failed(kind.Response(), str(error))  # type: ignore[attr-defined]
+            response.success = True
+            return self.completed(response)
+
+        answer.service_type = kind
+        return answer
+
+    return declare
+
+
+def state_service(kind: type) -> Callable:
+    """
+    Declare a method of `RobotServices` as the service `~/<its name>` about one state.
+
+    The method is called with the resolved `Query`, request and response. Joint names, state and
+    message of the response are filled here.
+
+    Parameters
+    ----------
+    kind : type
+        Service type.
+
+    """
+
+    def declare(method: Callable) -> Callable:
+        @functools.wraps(method)
+        def about_state(self: RobotServices, request: Any, response: Any) -> str:
+            query = Query(self.robot(), request, self.parameters['state_timeout'])
+            method(self, query, request, response)
+            response.joint_names = query.names
+            response.position = query.part(query.q)
+            if hasattr(response, 'velocity'):
+                response.velocity = query.part(query.qd)
+            return query.message + query.unseen
+
+        return service(kind)(about_state)
+
+    return declare

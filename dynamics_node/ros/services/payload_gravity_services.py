@@ -5,9 +5,8 @@ import time
 from dynamics_interfaces.srv import SetGravity, SetPayload
 import numpy as np
 
-from .base import Answering
+from .base import RobotServices, service
 from ..parameters.table import ParameterError
-from ..support.callback_errors import guarded_service
 from ...dynamics.arguments import check_link
 from ...errors import ArgumentError
 
@@ -25,100 +24,82 @@ _FIELDS = {
 _LEAST, _MOST = 9.76, 9.84
 
 
-class SettingServices(Answering):
+class PayloadGravityServices(RobotServices):
     """
-    Creates and answers ~/set_payload and ~/set_gravity.
+    The services ~/set_payload and ~/set_gravity.
 
     They set parameters, so that what is in force can be read there, and is checked in one place.
 
     """
 
-    def __init__(self, node, get_robot, parameters):
-        """Create the services of a node; see `Answering`."""
-        super().__init__(node, get_robot, parameters)
-        self.serve(SetPayload, 'set_payload', self.set_payload)
-        self.serve(SetGravity, 'set_gravity', self.set_gravity)
-
-    @guarded_service
+    @service(SetPayload)
     def set_payload(self, request, response):
         """Put a payload in place of the one before; answer the one in force."""
-
-        def fill():
-            robot, inertia = self.robot(), request.inertia
-            com = (inertia.com.x, inertia.com.y, inertia.com.z)
-            six = tuple(getattr(inertia, name) for name in _TENSOR)
-            link, mass = request.link, inertia.m
-            if mass == 0.0:
-                link, com, six = '', (0.0,) * 3, (0.0,) * 6
-            elif not link:
-                raise ArgumentError(
-                    'link: expected the one that carries the payload, got none: '
-                    f'one of {", ".join(robot.model.link_names)}'
-                )
-            else:
-                check_link(robot.model.tree.links, link)
-            try:
-                self.parameters.set(
-                    {
-                        'payload.link': link,
-                        'payload.mass': mass,
-                        'payload.com': com,
-                        'payload.inertia': six,
-                    }
-                )
-            except ParameterError as error:
-                raise ParameterError(_with_fields(str(error))) from error
-            over = robot.over_limits(self.parameters.values)
-            if not mass:
-                return 'nothing is carried'
-            if robot.model.tree.links[link].body < 0:
-                return f'{mass:g} kg on {link}, which no joint moves: without any effect'
-            return f'{mass:g} kg on {link}' + (
-                f', but gravity torque is above its limit: {over}' if over else ''
+        robot, inertia = self.robot(), request.inertia
+        com = (inertia.com.x, inertia.com.y, inertia.com.z)
+        six = tuple(getattr(inertia, name) for name in _TENSOR)
+        link, mass = request.link, inertia.m
+        if mass == 0.0:
+            link, com, six = '', (0.0,) * 3, (0.0,) * 6
+        elif not link:
+            raise ArgumentError(
+                'link: expected the one that carries the payload, got none: '
+                f'one of {", ".join(robot.model.link_names)}'
             )
+        else:
+            check_link(robot.model.tree.links, link)
+        self._set_payload(link, mass, com, six)
+        if not mass:
+            return 'nothing is carried'
+        if robot.model.tree.links[link].body < 0:
+            return f'{mass:g} kg on {link}, which no joint moves: without any effect'
+        over = robot.over_limits(self.parameters.values)
+        return f'{mass:g} kg on {link}' + (
+            f', but gravity torque is above its limit: {over}' if over else ''
+        )
 
-        return self._with_payload(self.answer(response, fill))
-
-    @guarded_service
+    @service(SetGravity)
     def set_gravity(self, request, response):
         """Take another direction of gravity; answer the one in force."""
-
-        def fill():
-            robot, frame = self.robot(), request.gravity.header.frame_id
-            vector = request.gravity.vector
-            gravity = np.array([vector.x, vector.y, vector.z])
-            if not np.isfinite(gravity).all():
-                raise ArgumentError(f'gravity: expected finite numbers, got {gravity.tolist()}')
-            if not gravity.any():
-                raise ArgumentError(
-                    'gravity: expected a vector that points to the earth, got '
-                    'zero; for none at all set the parameter gravity'
-                )
-            if frame not in ('', robot.model.tree.root):
-                gravity = self._turned(robot, frame, gravity)
-            self.parameters.set({'gravity': tuple(gravity.tolist())})
-            size = float(np.linalg.norm(gravity))
-            return f'gravity is {size:.6g} m/s^2 along this vector' + (
-                ''
-                if _LEAST <= size <= _MOST
-                else ', which is not that of the earth: its length counts too'
+        robot, frame = self.robot(), request.gravity.header.frame_id
+        vector = request.gravity.vector
+        gravity = np.array([vector.x, vector.y, vector.z])
+        if not np.isfinite(gravity).all():
+            raise ArgumentError(f'gravity: expected finite numbers, got {gravity.tolist()}')
+        if not gravity.any():
+            raise ArgumentError(
+                'gravity: expected a vector that points to the earth, got '
+                'zero; for none at all set the parameter gravity'
             )
+        if frame not in ('', robot.model.tree.root):
+            gravity = self._turned(robot, frame, gravity)
+        self.parameters.set({'gravity': tuple(gravity.tolist())})
+        size = float(np.linalg.norm(gravity))
+        return f'gravity is {size:.6g} m/s^2 along this vector' + (
+            ''
+            if _LEAST <= size <= _MOST
+            else ', which is not that of the earth: its length counts too'
+        )
 
-        return self._with_gravity(self.answer(response, fill))
-
-    def failed(self, response, message):
-        """Make a new response the answer to a request that failed: with what is in force."""
-        response = super().failed(response, message)
+    def completed(self, response):
+        """Return the response, also a refusal, with the payload or the gravity in force."""
         if isinstance(response, SetPayload.Response):
             return self._with_payload(response)
         return self._with_gravity(response)
+
+    def _set_payload(self, link, mass, com, six):
+        values = {'link': link, 'mass': mass, 'com': com, 'inertia': six}
+        try:
+            self.parameters.set({f'payload.{name}': value for name, value in values.items()})
+        except ParameterError as error:
+            raise ParameterError(_with_fields(str(error))) from error
 
     def _turned(self, robot, frame, vector):
         check_link(robot.model.tree.links, frame, 'header.frame_id')
         timeout = self.parameters['state_timeout']
         # Every joint that turns it, also those that are not in `joints`, and no other.
         if stale := robot.buffer.stale_joints(
-            time.monotonic(), timeout, _joints_to(robot.model.tree, frame)
+            time.monotonic(), timeout, robot.model.tree.supporting_joints(frame)
         ):
             raise ArgumentError(
                 f'header.frame_id: how {frame} is turned is not known: no joint '
@@ -128,7 +109,7 @@ class SettingServices(Answering):
         return robot.model.link_pose(robot.buffer.position, frame)[:3, :3] @ vector
 
     def _with_payload(self, response):
-        robot = self._get_robot()
+        robot = self.context.robot
         payload = robot.model.payload if robot else None
         if payload is not None:
             response.link, response.inertia.m = payload.link, payload.mass
@@ -141,21 +122,12 @@ class SettingServices(Answering):
         return response
 
     def _with_gravity(self, response):
-        robot = self._get_robot()
+        robot = self.context.robot
         if robot is not None:
             stamped = response.gravity
             stamped.header.frame_id = robot.model.tree.root
             stamped.vector.x, stamped.vector.y, stamped.vector.z = robot.model.gravity.tolist()
         return response
-
-
-def _joints_to(tree, link):
-    # Places of the joints between the base and a link, each once.
-    body, joints = tree.links[link].body, set()
-    while body >= 0:
-        joints.add(int(tree.q_index[body]))
-        body = tree.parent[body]
-    return sorted(joints)
 
 
 def _with_fields(text):

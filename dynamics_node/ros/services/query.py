@@ -36,7 +36,7 @@ class Query:
 
         Parameters
         ----------
-        robot : Robot
+        robot : ActiveRobot
         request : object
             A service's request.
         timeout : float

@@ -32,7 +32,7 @@ class TrajectoryArrays:
 
         Parameters
         ----------
-        robot : Robot
+        robot : ActiveRobot
         trajectory : trajectory_msgs.msg.JointTrajectory
             Its joint_names may be any of the robot's joints; empty for the chosen ones.
 

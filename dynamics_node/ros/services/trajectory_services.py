@@ -1,14 +1,15 @@
 """The services about trajectories and about how much the robot can carry."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 import time
 
 from dynamics_interfaces.srv import ComputeTrajectoryEffort, GetMaxPayload
 import numpy as np
 
-from .base import Answering
+from .base import RobotServices, service
 from .query import finite, Query
 from .trajectory_message import put_efforts, TrajectoryArrays
-from ..support.callback_errors import guarded_service
 from ..support.messages import to_field
 from ...dynamics import complete_trajectory, over_limit
 from ...errors import ArgumentError
@@ -17,115 +18,101 @@ from ...errors import ArgumentError
 MOST_WHILE_DRIVING = 1000
 
 
-class TrajectoryServices(Answering):
-    """Creates and answers ~/compute_trajectory_effort and ~/get_max_payload."""
+class TrajectoryServices(RobotServices):
+    """The services ~/compute_trajectory_effort and ~/get_max_payload."""
 
-    def __init__(self, node, get_robot, parameters, is_driving):
+    def __init__(self, context, path):
         """
-        Create the services of a node; see `Answering`.
+        Create the services.
 
         Parameters
         ----------
-        node, get_robot, parameters
-            See `Answering`.
-        is_driving : callable() -> bool
-            Whether efforts are being sent, which must not wait for long.
+        context : NodeContext
+        path : TorquePath
+            While it is on, no answer may take long.
 
         """
-        super().__init__(node, get_robot, parameters)
-        self._is_driving = is_driving
-        self.serve(
-            ComputeTrajectoryEffort, 'compute_trajectory_effort', self.compute_trajectory_effort
-        )
-        self.serve(GetMaxPayload, 'get_max_payload', self.get_max_payload)
+        super().__init__(context)
+        self._path = path
 
-    @guarded_service
+    @service(ComputeTrajectoryEffort)
     def compute_trajectory_effort(self, request, response):
         """Answer the same trajectory with efforts, and where they are above their limits."""
+        robot, trajectory = self.robot(), request.trajectory
+        motion = self._motion(robot, trajectory)
+        model, (q, qd, qdd) = robot.model, motion.states
+        efforts, notes = model.inverse_dynamics(q, qd, qdd), motion.notes
+        if request.without_gravity:
+            efforts = efforts - model.gravity_torque(q)
+            notes.append('without gravity')
+        if request.with_friction:
+            efforts = efforts + model.friction_torque(qd)
+            notes.append('with friction')
+        # The other joints have limits as well: they hold what the trajectory moves.
+        limits = self._limits(robot)
+        over = over_limit(finite(efforts), limits)
+        put_efforts(trajectory.points, efforts[:, motion.index])
+        trajectory.joint_names = list(motion.names)
+        response.trajectory = trajectory
+        response.within_limits = not len(over.points)
+        response.points_over_limit = over.points.tolist()
+        response.joints_over_limit = [robot.model.joint_names[i] for i in over.joints]
+        response.peak_effort = to_field(over.peak_effort[motion.index])
+        response.effort_limits = to_field(limits[motion.index])
+        if len(over.points):
+            notes.append(_over_in_words(over, limits, robot.model.joint_names, motion.index))
+        return ('; '.join(notes) or 'all velocities and accelerations were given') + motion.unseen
 
-        def fill():
-            robot, trajectory = self.robot(), request.trajectory
-            motion = self._motion(robot, trajectory)
-            model, (q, qd, qdd) = robot.model, motion.states
-            efforts, notes = model.inverse_dynamics(q, qd, qdd), motion.notes
-            if request.without_gravity:
-                efforts = efforts - model.gravity_torque(q)
-                notes.append('without gravity')
-            if request.with_friction:
-                efforts = efforts + model.friction_torque(qd)
-                notes.append('with friction')
-            # The other joints have limits as well: they hold what the trajectory moves.
-            limits = self._limits(robot)
-            over = over_limit(finite(efforts), limits)
-            put_efforts(trajectory.points, efforts[:, motion.index])
-            trajectory.joint_names = list(motion.names)
-            response.trajectory = trajectory
-            response.within_limits = not len(over.points)
-            response.points_over_limit = over.points.tolist()
-            response.joints_over_limit = [robot.model.joint_names[i] for i in over.joints]
-            response.peak_effort = to_field(over.peak_effort[motion.index])
-            response.effort_limits = to_field(limits[motion.index])
-            if len(over.points):
-                notes.append(_over_in_words(over, limits, robot.model.joint_names, motion.index))
-            return (
-                '; '.join(notes) or 'all velocities and accelerations were given'
-            ) + motion.unseen
-
-        return self.answer(response, fill)
-
-    @guarded_service
+    @service(GetMaxPayload)
     def get_max_payload(self, request, response):
         """Answer the largest mass at a point of a link, and the joint that allows no more."""
+        robot = self.robot()
+        link = request.link or robot.model.tip_link
+        point = (request.point.x, request.point.y, request.point.z)
+        motion = self._asked_motion(robot, request)
+        q, qd, qdd = motion.states
+        limits = self._limits_before_gains(robot)
+        most = robot.model.max_payload(q, link, point, qd=qd, qdd=qdd, effort_limits=limits)
+        mass, joint, (place,) = most.least()
+        if mass != np.inf:  # which says that no limit is in the way
+            finite(mass)
+        carried = robot.model.with_payload(link, mass if np.isfinite(mass) else 0.0, point)
+        effort = carried.inverse_dynamics(q[place], qd[place], qdd[place])
+        response.joint_names, response.link = list(motion.names), link
+        response.position = to_field(q[place, motion.index])
+        response.mass = mass
+        response.limiting_joint = robot.model.joint_names[joint] if joint >= 0 else ''
+        response.limiting_point = place if request.trajectory.points else -1
+        response.effort = to_field(finite(effort[motion.index]))
+        response.effort_limits = to_field(limits[motion.index])
+        notes = [_in_words(mass, response.limiting_joint, link)]
+        if joint >= 0 and joint not in motion.index:
+            notes.append(
+                f'{response.limiting_joint} is not in joint_names: it needs '
+                f'{effort[joint]:.6g} of {limits[joint]:.6g}'
+            )
+        return '; '.join([*notes, *motion.notes]) + motion.unseen
 
-        def fill():
-            robot = self.robot()
-            link = request.link or robot.model.tip_link
-            point = (request.point.x, request.point.y, request.point.z)
-            if request.trajectory.points:
-                motion = self._motion(robot, request.trajectory)
-                names, index, notes = motion.names, motion.index, motion.notes
-                unseen = motion.unseen
-                q, qd, qdd = motion.states
-                notes.insert(0, 'over the trajectory')
-            else:
-                query = Query(robot, request, self.parameters['state_timeout'])
-                names, index, notes = query.names, query.index, [f'at rest {query.message}']
-                unseen = query.unseen
-                q = query.q[None]
-                qd = qdd = np.zeros_like(q)
-            limits = self._limits_before_gains(robot)
-            most = robot.model.max_payload(q, link, point, qd=qd, qdd=qdd, effort_limits=limits)
-            mass, joint, (place,) = most.least()
-            if mass != np.inf:  # which says that no limit is in the way
-                finite(mass)
-            carried = robot.model.with_payload(link, mass if np.isfinite(mass) else 0.0, point)
-            effort = carried.inverse_dynamics(q[place], qd[place], qdd[place])
-            response.joint_names, response.link = list(names), link
-            response.position = to_field(q[place, index])
-            response.mass = mass
-            response.limiting_joint = robot.model.joint_names[joint] if joint >= 0 else ''
-            response.limiting_point = place if request.trajectory.points else -1
-            response.effort = to_field(finite(effort[index]))
-            response.effort_limits = to_field(limits[index])
-            if joint >= 0 and joint not in index:
-                notes.insert(
-                    0,
-                    f'{response.limiting_joint} is not in joint_names: it needs '
-                    f'{effort[joint]:.6g} of {limits[joint]:.6g}',
-                )
-            return '; '.join([_in_words(mass, response.limiting_joint, link), *notes]) + unseen
-
-        return self.answer(response, fill)
+    def _asked_motion(self, robot, request):
+        # The trajectory of a request, or the one state that it asks for, at rest.
+        if request.trajectory.points:
+            motion = self._motion(robot, request.trajectory)
+            motion.notes.insert(0, 'over the trajectory')
+            return motion
+        query = Query(robot, request, self.parameters['state_timeout'])
+        q = query.q[None]
+        states = (q, np.zeros_like(q), np.zeros_like(q))
+        notes = [f'at rest {query.message}']
+        return _Motion(query.names, query.index, states, notes, query.unseen)
 
     def _motion(self, robot, trajectory):
-        if len(trajectory.points) > MOST_WHILE_DRIVING and self._is_driving():
+        if len(trajectory.points) > MOST_WHILE_DRIVING and self._path.is_on:
             raise ArgumentError(
                 f'trajectory: expected at most {MOST_WHILE_DRIVING} points while the output is '
                 f'on, because the efforts wait for the answer, got {len(trajectory.points)}: ask '
                 'in parts, or while it is off'
             )
-        timeout = self.parameters['state_timeout']
-        return _Motion(robot, trajectory, timeout)
+        return _read_motion(robot, trajectory, self.parameters['state_timeout'])
 
     def _limits_before_gains(self, robot):
         # What the node sends is limited after effort_scale; what it never sends has no limit.
@@ -165,22 +152,46 @@ def _in_words(mass, joint, link):
     return f'{mass:.6g} kg on {link}: then {joint} is at its effort limit'
 
 
+@dataclass
 class _Motion:
-    # A trajectory, with all derivatives, of all joints of the robot.
+    """
+    States of all joints of the robot.
 
-    def __init__(self, robot, trajectory, timeout):
-        arrays = TrajectoryArrays(robot, trajectory)
-        motion = complete_trajectory(
-            arrays.time, arrays.positions, arrays.velocities, arrays.accelerations
-        )
-        self.names, self.index = arrays.names, arrays.index
-        rest = np.zeros(len(robot.model.joint_names))
-        self.states = (
-            arrays.whole(motion.positions, robot.buffer.position),
-            arrays.whole(motion.velocities, rest),
-            arrays.whole(motion.accelerations, rest),
-        )
-        self.notes = [motion.obtained] if motion.obtained else []
-        self.unseen = robot.unseen_others(
-            arrays.index, time.monotonic(), timeout
-        ) + robot.beyond_limits(arrays.index, motion.positions)
+    Attributes
+    ----------
+    names : sequence of str
+        The m joints of the request.
+    index : numpy.ndarray of int, shape (m,)
+        Their places among all n joints.
+    states : tuple of numpy.ndarray, shape (N, n)
+        Positions, velocities, accelerations.
+    notes : list of str
+        Where they come from, for people.
+    unseen : str
+        See `Query`.
+
+    """
+
+    names: Sequence[str]
+    index: np.ndarray
+    states: tuple[np.ndarray, np.ndarray, np.ndarray]
+    notes: list[str]
+    unseen: str
+
+
+def _read_motion(robot, trajectory, timeout):
+    arrays = TrajectoryArrays(robot, trajectory)
+    motion = complete_trajectory(
+        arrays.time, arrays.positions, arrays.velocities, arrays.accelerations
+    )
+    rest = np.zeros(len(robot.model.joint_names))
+    states = (
+        arrays.whole(motion.positions, robot.buffer.position),
+        arrays.whole(motion.velocities, rest),
+        arrays.whole(motion.accelerations, rest),
+    )
+    unseen = robot.unseen_others(arrays.index, time.monotonic(), timeout) + robot.beyond_limits(
+        arrays.index, motion.positions
+    )
+    notes = [motion.obtained] if motion.obtained else []
+    return _Motion(arrays.names, arrays.index, states, notes, unseen)

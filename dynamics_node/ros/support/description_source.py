@@ -15,24 +15,23 @@ class DescriptionSource:
 
     """
 
-    def __init__(self, node, parameters, on_description):
+    def __init__(self, context, on_description):
         """
         Choose the source; `begin` delivers.
 
         Parameters
         ----------
-        node : rclpy.node.Node
-        parameters : Parameters
+        context : NodeContext
         on_description : callable(source, origin)
             Source is the URDF text or path; origin says in words where it comes from.
             Returns False if it has to wait; `offer_pending` then offers it again.
 
         """
-        self.logger = node.get_logger()
+        self.logger = context.logger
         self._on_description = on_description
         self._last = self._pending = None
         self.topic = self.subscription = None
-        self._node, self._parameters = node, parameters
+        self._node, self._parameters = context.node, context.parameters
 
     def begin(self):
         """Deliver what is there and listen for more."""

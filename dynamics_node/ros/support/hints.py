@@ -24,23 +24,22 @@ _STATES = ('', '_raw', '_unfiltered')
 class Hints:
     """Looks now and then whether the node still waits, and says how to go on."""
 
-    def __init__(self, node, get_robot, source, states, now=time.monotonic):
+    def __init__(self, context, source, states, now=time.monotonic):
         """
         Begin to wait.
 
         Parameters
         ----------
-        node : rclpy.node.Node
-        get_robot : callable() -> Robot or None
+        context : NodeContext
         source : DescriptionSource
-        states : StateInput
+        states : JointStateInput
         now : callable() -> float
             Steady clock, s.
 
         """
-        self.logger = node.get_logger()
-        self._node = node
-        self._get_robot = get_robot
+        self.logger = context.logger
+        self._context = context
+        self._node = context.node
         self._source = source
         self._states = states
         self._now = now
@@ -51,7 +50,7 @@ class Hints:
 
     def give(self):
         """Log what is missing and what to type, if something is missing for too long."""
-        robot = self._get_robot()
+        robot = self._context.robot
         if robot is not None:
             self._count_messages(robot.buffer)
         if self._now() - self._start < PATIENCE:

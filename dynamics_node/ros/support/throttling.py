@@ -76,7 +76,7 @@ class Rate:
 ASK_EVERY = 0.05
 
 
-class Listened:
+class HasSubscribers:
     """
     Knows whether a publisher has listeners.
 

@@ -24,7 +24,7 @@ def read_robot(source, values):
 
     Returns
     -------
-    Robot
+    ActiveRobot
         Not configured yet.
 
     Raises
@@ -36,7 +36,7 @@ def read_robot(source, values):
     tree = build_tree(read_urdf(source))
     if not tree.joint_names:
         raise DynamicsError('the robot has no joint that can be moved')
-    return Robot(
+    return ActiveRobot(
         RobotModel(tree) if values['machine_code'] else one_off_model(tree), values['joints']
     )
 
@@ -50,7 +50,7 @@ class StateUnavailableError(DynamicsError):
     """The newest measured state was asked for, and there is none that is fresh."""
 
 
-class Robot:
+class ActiveRobot:
     """
     One robot as the node uses it.
 

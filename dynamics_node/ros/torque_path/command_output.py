@@ -38,22 +38,22 @@ class CommandOutput:
 
     """
 
-    def __init__(self, node, parameters, on_change, on_tick=lambda: None):
+    def __init__(self, context, on_change, on_tick=lambda: None):
         """
         Create publishers and watchdog; the output is off.
 
         Parameters
         ----------
-        node : rclpy.node.Node
-        parameters : Parameters
+        context : NodeContext
         on_change : callable()
             Called after every change of the output's state.
         on_tick : callable()
             Called at every tick, and at the latest every IDLE_TICK, whatever the state.
 
         """
-        self.logger = node.get_logger()
-        self._node = node
+        self.logger = context.logger
+        self._node = node = context.node
+        parameters = context.parameters
         self._on_change, self._on_tick = on_change, on_tick
         self.commands = self._listeners = 0
         self._count_due = Throttle(COUNT_EVERY)

@@ -30,26 +30,24 @@ class Enabling:
 
     """
 
-    def __init__(self, node, parameters, get_robot, output, monitor, controllers, source):
+    def __init__(self, context, output, monitor, controllers, source):
         """
         Create the service.
 
         Parameters
         ----------
-        node : rclpy.node.Node
-        parameters : Parameters
-        get_robot : callable() -> Robot or None
+        context : NodeContext
         output : CommandOutput
         monitor : PublisherMonitor
         controllers : Controllers
         source : DescriptionSource
 
         """
-        self.logger = node.get_logger()
+        self.logger = context.logger
         self.was_asked = False
-        self._node = node
-        self._parameters = parameters
-        self._get_robot = get_robot
+        self._context = context
+        self._node = context.node
+        self._parameters = context.parameters
         self._output = output
         self._path = output.path
         self._monitor = monitor
@@ -59,7 +57,7 @@ class Enabling:
         self._canceled = 0
         # The answer waits for the controllers while joint states go on: not in their group. Nor
         # in that of the other services, which may wait: this one also stops the arm.
-        node.create_service(
+        context.node.create_service(
             SetBool, '~/enable', self._requested, callback_group=ReentrantCallbackGroup()
         )
 
@@ -79,14 +77,14 @@ class Enabling:
         self._source.offer_pending()  # what came while the output was on counts from now on
         if reasons := self.refusals():
             return False, _refused(reasons)
-        asked, canceled = self._get_robot(), self._canceled
+        asked, canceled = self._context.robot, self._canceled
         await self._ask_controllers()
         if canceled != self._canceled:
             return False, 'disabled on request before it was enabled'
         if answer := self._already():  # by another request meanwhile
             return answer
         # All of it anew: time has passed.
-        robot = self._get_robot()
+        robot = self._context.robot
         reasons = self.refusals()
         if robot is not asked:
             reasons.append(
@@ -123,7 +121,7 @@ class Enabling:
         """Return every reason why the output must not be enabled now, as a list of str."""
         if self._path.is_closed:
             return ['the node is shutting down']
-        robot, values = self._get_robot(), self._parameters.values
+        robot, values = self._context.robot, self._parameters.values
         if robot is None:
             return ['no robot description yet']
         return (

@@ -24,7 +24,7 @@ WARN_EVERY = 1.0
 WARN_OF_LIMITS_EVERY = 30.0
 
 
-class StateInput:
+class JointStateInput:
     """
     Subscribes to the joint states, sends the command that follows from each, and passes it on.
 
@@ -39,14 +39,13 @@ class StateInput:
 
     """
 
-    def __init__(self, node, parameters, output, listener, raw):
+    def __init__(self, context, output, listener, raw):
         """
         Subscribe.
 
         Parameters
         ----------
-        node : rclpy.node.Node
-        parameters : Parameters
+        context : NodeContext
         output : CommandOutput
         listener : object
             With `on_state(stamp)` for every usable state, after its command has gone out, and
@@ -55,9 +54,9 @@ class StateInput:
             Read the states by `JointStateReader` instead of rclpy.
 
         """
-        self.logger = node.get_logger()
-        self._node = node
-        self._clock = node.get_clock()
+        self.logger = context.logger
+        self._node = context.node
+        self._clock = context.node.get_clock()
         self._output = output
         self._path = output.path
         self._listener = listener
@@ -69,7 +68,7 @@ class StateInput:
         self.publishers = self.skipped = 0
         self._callback, self._raw = self._bytes_received if raw else self._received, raw
         # Changed in place by the overrides.
-        self._profile = joint_states(parameters['allow_several_state_publishers'])
+        self._profile = joint_states(context.parameters['allow_several_state_publishers'])
         self.subscription = self._subscribe(qos_overriding_options=JOINT_STATES_OVERRIDES)
         # Not where the parameters say how deep it is to be.
         self._adapts = (

@@ -17,25 +17,24 @@ class Protection:
 
     """
 
-    def __init__(self, node, output, monitor, controllers, get_robot):
+    def __init__(self, context, output, monitor, controllers):
         """
         Create the checks; `check` runs them.
 
         Parameters
         ----------
-        node : rclpy.node.Node
+        context : NodeContext
         output : CommandOutput
         monitor : PublisherMonitor
         controllers : Controllers
-        get_robot : callable() -> Robot or None
 
         """
-        self.logger = node.get_logger()
+        self.logger = context.logger
+        self._context = context
         self._output = output
         self._path = output.path
         self._monitor = monitor
         self._controllers = controllers
-        self._get_robot = get_robot
         self._had_listener = True
         self._was_driving = False
         self._next_idle = 0.0
@@ -83,7 +82,7 @@ class Protection:
         if inactive or gone:
             self._lose(now, '; '.join(inactive + gone))
             return
-        mismatches = self._controllers.refusals(self._get_robot().joint_names)
+        mismatches = self._controllers.refusals(self._context.robot.joint_names)
         if mismatches:
             self._path.fault(now, '; '.join(mismatches))
 

@@ -9,25 +9,24 @@ class PublisherMonitor:
 
     """
 
-    def __init__(self, node, command_topic, states, source, allow_several_state_publishers):
+    def __init__(self, context, command_topic, states, source):
         """
         Monitor the topics of a node.
 
         Parameters
         ----------
-        node : rclpy.node.Node
+        context : NodeContext
         command_topic : str
             Resolved name.
-        states : StateInput
+        states : JointStateInput
         source : DescriptionSource
-        allow_several_state_publishers : bool
 
         """
-        self._node = node
+        self._node = context.node
         self._command_topic = command_topic
         self._states = states
         self._source = source
-        self._allows_several = allow_several_state_publishers
+        self._allows_several = context.parameters['allow_several_state_publishers']
 
     def conflicts(self):
         """Return every reason against sending efforts to the arm, a list of str."""
