@@ -13,7 +13,7 @@ _TEST = Path(__file__).parent
 
 # The same examples in every run: CI=1 make test. More of them, or fewer:
 # HYPOTHESIS_EXAMPLES=5000 make test ARGS=test/dynamics
-# How long an example takes depends on what else runs here, and is not what they judge.
+# No deadline: the time of an example depends on the load of the machine.
 settings.register_profile(
     'here',
     derandomize=bool(os.environ.get('CI')),
@@ -28,10 +28,10 @@ settings.load_profile('here')
 def machine_code_folder(tmp_path_factory):
     folder = tmp_path_factory.getbasetemp()
     if 'PYTEST_XDIST_WORKER' in os.environ:
-        folder = folder.parent  # which the workers share, as programs on one machine do
+        folder = folder.parent  # shared by the workers
     folder /= 'machine_code'
     folder.mkdir(mode=0o700, exist_ok=True)
-    # Processes that tests start find it too.
+    # Also for the processes of tests.
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('DYNAMICS_NODE_CACHE_DIR', str(folder))
         yield
@@ -39,8 +39,7 @@ def machine_code_folder(tmp_path_factory):
 
 @pytest.fixture(scope='session', autouse=True)
 def own_domain():
-    # The one that was chosen, unless another worker or another run is in it. Processes that
-    # tests start are in it too.
+    # Another than that of other workers and runs; also for the processes of tests.
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('ROS_DOMAIN_ID', str(claim()))
         if 'ROS_AUTOMATIC_DISCOVERY_RANGE' not in os.environ:
@@ -48,7 +47,6 @@ def own_domain():
         yield
 
 
-# Over DDS: everything started here is also ended here.
 @pytest.fixture
 def client():
     """Return a client of the node."""
@@ -79,7 +77,7 @@ def start_markers():
 
 @contextlib.contextmanager
 def _starting(kind):
-    with contextlib.ExitStack() as stack:  # which ends all, also when the end of one goes wrong
+    with contextlib.ExitStack() as stack:  # ends all of them, even after an error
 
         def start(*remappings, **parameters):
             process = kind(*remappings, **parameters)
@@ -91,16 +89,16 @@ def _starting(kind):
 
 @pytest.fixture(scope='module')
 def shared():
-    """Return a client of a node with arm7, for all tests of a file that only ask."""
+    """Return a client of a node with arm7, shared by the tests of a file that only query."""
     from support.processes import Client, NodeProcess
     from support.robots import ARM7
     from support.ros_domain import claim
 
     with contextlib.ExitStack() as stack:
-        # In a domain of its own: other tests here start nodes of the same name.
+        # In a separate domain: other tests start nodes of the same name.
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv('ROS_DOMAIN_ID', str(claim()))
-            # A busy machine does not trip it while states come.
+            # Long, for a busy machine.
             node = NodeProcess(robot_description_file=ARM7, state_timeout=1.0)
             stack.callback(node.close)
             client = Client()
@@ -108,8 +106,8 @@ def shared():
         yield client
 
 
-# The rest only matters with pytest-xdist's `-n N --dist loadgroup --no-loadscope-reorder`, as
-# scripts/test.sh passes them: tests of one group run in one worker, groups in collection order.
+# The rest only matters with pytest-xdist's `-n N --dist loadgroup`, as scripts/test.sh passes
+# them: tests of one group run in one worker, groups in collection order.
 
 # These compute each public robot once per process: see support/result_cache.py.
 _SHARE_RESULTS = (
@@ -141,6 +139,11 @@ def _group(file):
         return 'result_cache'
     shares_a_node = file.endswith(('services.py', '_on_the_arm.py'))
     return None if file.startswith('ros/') and not shares_a_node else file
+
+
+def pytest_configure(config):
+    if hasattr(config.option, 'loadscopereorder'):  # --no-loadscope-reorder of pytest-xdist
+        config.option.loadscopereorder = False
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the marks

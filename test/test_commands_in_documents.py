@@ -1,4 +1,4 @@
-"""Every command line of the documents: programs, launch arguments, topics and parameters exist."""
+"""All commands of the documents: programs, launch arguments, topics and parameters exist."""
 
 import importlib
 import importlib.util
@@ -162,7 +162,7 @@ def test_no_other_verb_of_ros2_is_used():
 
 def test_all_commands_are_found():
     assert len(RUN) > 5 and len(LAUNCH) > 2 and len(MODULES) > 5 and len(MAKE) > 5
-    said = sum(
+    count = sum(
         len(re.findall(r'\bros2 launch dynamics_node \w', path.read_text())) for path in SOURCES
     )
-    assert len(LAUNCH) == said
+    assert len(LAUNCH) == count
