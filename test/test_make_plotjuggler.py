@@ -1,4 +1,4 @@
-"""config/plotjuggler.xml: what scripts/make_plotjuggler.py writes, and topics the node has."""
+"""config/plotjuggler.xml: written by its script, with topics of the node."""
 
 import importlib.util
 from pathlib import Path

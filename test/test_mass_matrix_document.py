@@ -1,4 +1,4 @@
-"""docs/how_to/mass_matrix.md: its Python asks the real node, and so does its C++ where it can."""
+"""docs/how_to/mass_matrix.md: its Python and C++ clients with the real node."""
 
 import json
 import os
@@ -25,7 +25,7 @@ Q = [0.1, 0.2, -0.3, 0.4, -0.5, 0.6, 0.7, 0.02]
 
 @pytest.fixture
 def node():
-    """Return nothing; a node runs and is known meanwhile."""
+    """Run a node, and wait for its services."""
     process = NodeProcess(robot_description_file=ARM7)
     client = Client()
     try:

@@ -1,4 +1,4 @@
-"""The pictures of the documents: what they show is computed right, and who cannot draw says so."""
+"""The pictures of the documents: their numbers, and errors without OpenGL."""
 
 import os
 from pathlib import Path
@@ -60,7 +60,7 @@ def test_the_arm_is_rendered():
     assert run.returncode == 0, run.stderr
 
 
-def test_without_opengl_it_says_what_to_install():
+def test_without_opengl_the_error_names_the_package_to_install():
     run = render(MUJOCO_GL='disabled')
     assert run.returncode == 1
     assert 'install libegl1 (then MUJOCO_GL=egl) or libosmesa6' in run.stderr
@@ -78,7 +78,7 @@ def test_an_unknown_name_is_refused():
 
 @pytest.fixture(scope='module')
 def few():
-    """Return postures of a coarse grid, of which all cells are seen."""
+    """Return postures of a coarse grid, and the worst ones of its cells."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(workspace, 'STEPS', (41, 41, 9))
         patch.setattr(workspace, 'CELL', 0.1)

@@ -1,4 +1,4 @@
-"""docs/report.md: its code runs, its commands work, its CI step is what it says."""
+"""docs/report.md: its code and its commands."""
 
 from pathlib import Path
 import re

@@ -1,4 +1,4 @@
-"""docs/trajectory.md: its code asks the real node over DDS, and its library code runs."""
+"""docs/trajectory.md: its client with the real node, its controller and library code."""
 
 import json
 from pathlib import Path
@@ -18,7 +18,7 @@ ASK, SEND, LIBRARY = blocks(ROOT / 'docs' / 'trajectory.md')
 ARM = RobotModel.from_urdf(ARM7)
 GOAL = [0.4, -0.3, 0.2, 0.5, -0.1, 0.3, 0.2]
 NAMES = list(ARM.joint_names[:7])
-# In a process of its own, as a user's: it calls rclpy.init.
+# A separate process: it calls rclpy.init.
 USE = f"""
 import json
 rclpy.init()
@@ -62,7 +62,7 @@ def answers():
 
 
 def whole(values):
-    """Return columns for the gripper too, which stands still."""
+    """Add columns of zeros for the gripper."""
     return np.concatenate((values, np.zeros((len(values), len(ARM.joint_names) - 7))), axis=1)
 
 

@@ -1,4 +1,4 @@
-"""Robot files: the demo's own arm in the installed package or the checkout, and any other."""
+"""URDF files: arm7 in the installed package or the checkout, and any other."""
 
 from pathlib import Path
 

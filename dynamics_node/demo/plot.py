@@ -1,4 +1,4 @@
-"""demo.png: where the joints went, what the motors gave, and how the arm stood."""
+"""demo.png: joint displacements, motor efforts and poses of a run."""
 
 from pathlib import Path
 from typing import Any
@@ -26,8 +26,8 @@ POSE_COLORS = {
     'held': '#2b8a3e',
     'after the push': '#c98a00',
 }
-LEAD_IN = 0.3  # [s] shown before the first phase
-NARROW = 0.12  # a phase shorter than this share of the run has no room for its name above it
+LEAD_IN = 0.3  # [s] before the first phase
+NARROW = 0.12  # share of the run; the name of a shorter phase stands inside it, upright
 JOINT_COLORS = [
     '#1f4e9e',
     '#d1495b',
@@ -57,7 +57,7 @@ def draw(outcome: Outcome, arm: MujocoArm, name: str, path: Path) -> None:
 
 
 def _title(outcome: Outcome, name: str) -> str:
-    """Return the headline: the four figures."""
+    """Return the headline: the four displacements."""
     return (
         f'{name}: falls {outcome.largest(outcome.fall):.0f}° in {FALL_TIME:.0f} s '
         'without the node, '
@@ -68,12 +68,12 @@ def _title(outcome: Outcome, name: str) -> str:
 
 
 def _small(degrees: float) -> str:
-    """Return a small angle; nobody believes a plain zero."""
+    """Return a small angle; a rounded zero would look like a missing value."""
     return f'{degrees:.2f}°' if degrees >= 0.01 else 'less than 0.01°'
 
 
 def _draw_poses(axes: list[Any], outcome: Outcome, arm: MujocoArm) -> None:
-    """Draw one stick figure per pose, all in one scale, seen from the side."""
+    """Draw one stick figure per pose, from the side, all at the same scale."""
     sticks = {pose: arm.skeleton(position) for pose, position in outcome.poses.items()}
     titles = {
         'start': 'start',
@@ -110,13 +110,13 @@ def _draw_stick(axis: Any, stick: np.ndarray, color: str) -> None:
 
 
 def _side(tip: np.ndarray) -> np.ndarray:
-    """Return the horizontal direction, shape (3,), that the arm points to."""
+    """Return the horizontal direction of the arm, shape (3,)."""
     radius = np.hypot(tip[0], tip[1])
     return np.array([tip[0], tip[1], 0.0]) / radius if radius > 1e-3 else np.array([1.0, 0, 0])
 
 
 def _draw_displacement(axis: Any, outcome: Outcome) -> None:
-    """Draw how far every joint is from its start."""
+    """Draw the displacement of each joint from its start."""
     recording = outcome.recording
     times, way = (
         recording.times(),
@@ -133,7 +133,7 @@ def _draw_displacement(axis: Any, outcome: Outcome) -> None:
 
 
 def _draw_effort(axis: Any, outcome: Outcome) -> None:
-    """Draw what the motors gave."""
+    """Draw the motor efforts."""
     recording = outcome.recording
     times, efforts = recording.times(), recording.efforts()
     for row in range(len(recording.names)):
@@ -148,7 +148,7 @@ def _draw_effort(axis: Any, outcome: Outcome) -> None:
 
 
 def _shade(axis: Any, phases: list[Phase], wide: bool) -> None:
-    """Color the background by phase, and name the wide phases above or the narrow ones inside."""
+    """Color the background by phase; name wide phases above it, narrow ones inside."""
     total = phases[-1].end - phases[0].start
     for phase in phases:
         axis.axvspan(phase.start, phase.end, color=PHASE_COLORS[phase.name], alpha=0.55, lw=0)

@@ -1,4 +1,4 @@
-"""The whole demo: the real node holds the simulated arm, and the exit code says so."""
+"""The complete demo, with its exit codes."""
 
 from pathlib import Path
 import subprocess
@@ -29,7 +29,6 @@ def demo(child_environment, tmp_path):
 
 
 def test_the_demo_succeeds_and_draws_its_figure(demo, tmp_path):
-    """Falls, holds, is pushed, holds there: exit code 0."""
     code, output = demo('--hold', '1')
     assert code == 0, output
     assert 'shoulder_pitch' in output and 'It falls without the node' in output
@@ -47,10 +46,16 @@ def test_the_demo_succeeds_and_draws_its_figure(demo, tmp_path):
 def test_a_robot_that_cannot_be_run_ends_it_with_a_sentence(
     capsys, tmp_path, monkeypatch, text, sentence
 ):
-    """Before any process is started, exit code 1."""
     monkeypatch.setenv('ROS_DOMAIN_ID', '17')
     path = Path(tmp_path) / 'robot.urdf'
     if text is not None:
         path.write_text(text)
     assert main(['demo', '--robot', str(path)]) == 1
     assert sentence in ' '.join(capsys.readouterr().out.split())
+
+
+def test_a_viewer_without_a_display_is_refused_before_the_start(capsys, monkeypatch):
+    for variable in ('DISPLAY', 'WAYLAND_DISPLAY'):
+        monkeypatch.delenv(variable, raising=False)
+    assert main(['demo', '--view']) == 1
+    assert capsys.readouterr().out.startswith('demo failed: the viewer needs a display')

@@ -1,4 +1,4 @@
-"""The soak itself, for some seconds: it ends, prints its table, and nothing was lost."""
+"""A soak of some seconds: exit code and table."""
 
 import os
 from pathlib import Path

@@ -1,11 +1,11 @@
-"""A fault that ends in FAULT leaves the node able to report it."""
+"""Faults whose detection needs a running node."""
 
 from types import SimpleNamespace
 
 from soak.faults import FAULTS, STATE_TIMEOUT
 
 
-def test_a_stopped_node_goes_on_before_a_fault_is_expected_of_it():
+def test_a_stopped_node_continues_before_it_reports_the_fault():
     done = []
     rig = SimpleNamespace(
         during=done.append,

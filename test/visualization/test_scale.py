@@ -4,7 +4,7 @@ import dataclasses
 import re
 
 from dynamics_node import RobotModel
-from dynamics_node.visualization.scale import ARC, arc_radii, make_sizes, reach
+from dynamics_node.visualization.scale import ARC, arc_radii, make_scale, reach
 import numpy as np
 import pytest
 from support.robots import ARM7, PENDULUM, public_robot
@@ -48,7 +48,7 @@ def test_the_reach_of_known_arms_is_about_what_their_makers_say():
 @pytest.mark.parametrize('factor', [0.01, 7.0])
 def test_a_robot_of_another_size_has_the_same_picture(factor):
     one, other = (
-        make_sizes(without_travel(RobotModel.from_urdf(text).tree))
+        make_scale(without_travel(RobotModel.from_urdf(text).tree))
         for text in (ARM7.read_text(), scaled(ARM7.read_text(), factor))
     )
     assert other.reach == pytest.approx(factor * one.reach)
