@@ -47,7 +47,7 @@ def workspace():
     from pictures import workspace
 
     robot = RobotModel.from_urdf(ARM7)
-    robot.specialize(loads=True)
+    robot.specialize(with_payload_code=True)
     workspace.draw(robot, DOCS / 'workspace.png')
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .worst_case_search import CoordinateAscent
-from ..dynamics import one_off_model, RobotModel
+from ..dynamics import RobotModel
 from ..model import build_tree
 from ..model.tree import PRISMATIC
 from ..urdf import Inertial, RobotDescription
@@ -79,7 +79,7 @@ class WorkspaceAnalysis:
             As `RobotModel` does.
 
         """
-        model = one_off_model(build_tree(description), gravity)
+        model = RobotModel(build_tree(description), gravity, compile=False)
         ranges, notes = sampling_ranges(model)
         return cls(description, model, ranges, notes, sample_positions(ranges, samples, seed))
 
@@ -209,7 +209,7 @@ class WorkspaceAnalysis:
             for link in self.description.links
         )
         tree = build_tree(replace(self.description, links=links))
-        return one_off_model(tree, self.model.gravity)
+        return RobotModel(tree, self.model.gravity, compile=False)
 
     def supporting_joints(self, link: str) -> list[int]:
         """Return the indices of the independent joints that carry a link, the nearest first."""

@@ -8,9 +8,8 @@ from rclpy.node import Node
 
 from .context import NodeContext
 from .parameters.live_change_check import check_change
-from .parameters.model_settings import PER_JOINT
 from .parameters.parameters import Parameters
-from .parameters.table import ParameterError
+from .parameters.table import check_lengths, ParameterError
 from .publishers.diagnostics import Diagnostics
 from .publishers.external_torque import ExternalTorque
 from .publishers.result_publishers import ResultPublishers
@@ -116,7 +115,7 @@ class DynamicsNode(Node):
             return False
         try:
             robot = read_robot(source, self.parameters.values)
-            self._check_lengths(self.parameters.values, robot)
+            check_lengths(self.parameters.values, robot.joint_names)
             robot.configure(self.parameters.values)
         except (DynamicsError, ParameterError) as error:
             if origin.startswith('parameter'):
@@ -130,7 +129,7 @@ class DynamicsNode(Node):
         if self.parameters['machine_code']:
             # In another process; the general kernel answers meanwhile. For payloads too: when
             # one comes, the arm may float, and nothing should be started then.
-            robot.model.specialize(wait=False, loads=True)
+            robot.model.specialize(wait=False, with_payload_code=True)
         is_first = self._shared.robot is None
         self._shared.robot = robot
         self.path.use(robot.buffer)
@@ -148,29 +147,11 @@ class DynamicsNode(Node):
         for warning in robot.model.warnings:
             self.logger.warning(warning)
 
-    def _check_lengths(self, values, robot):
-        count = len(robot.joint_names)
-        for name in (
-            'effort_limits',
-            'effort_rate_limits',
-            'velocity_limits',
-            'effort_scale',
-            *PER_JOINT,
-            'friction.smoothing_velocity',
-        ):
-            allowed = (0, 1, count) if name == 'friction.smoothing_velocity' else (0, count)
-            if len(values[name]) not in allowed:
-                raise ParameterError(
-                    f'{name}: expected {count} numbers for '
-                    f'{", ".join(robot.joint_names)}, or none; got '
-                    f'{len(values[name])}'
-                )
-
     def _check_against_robot(self, values):
         robot, before = self._shared.robot, self.parameters.values
         if robot is None:
             return
-        self._check_lengths(values, robot)
+        check_lengths(values, robot.joint_names)
         model = robot.configured(values, before)
         if self.path.is_on:
             check_change(robot, model, values, before, self._gravity_change, time.monotonic())
@@ -200,6 +181,7 @@ class DynamicsNode(Node):
     def on_state(self, stamp):
         """Publish what follows from a joint state besides the command, which has gone out."""
         robot, effort = self._shared.robot, self.path.gravity_torque
+        assert robot is not None  # without a robot there is no state
         if not all(map(math.isfinite, effort.tolist())):
             if self._not_finite.is_due():
                 self.logger.warning(

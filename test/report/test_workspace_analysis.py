@@ -75,12 +75,12 @@ def test_batches_cover_the_samples_once(analysis):
 
 
 def test_no_compiler_is_started(monkeypatch):
-    from dynamics_node import codegen
+    from dynamics_node.codegen import worker
 
     def refuse(*_):
         raise AssertionError('a compiler was started')
 
-    monkeypatch.setattr(codegen, 'start', refuse)
+    monkeypatch.setattr(worker, 'start', refuse)
     analysis = WorkspaceAnalysis.from_description(
         read_urdf(random_urdf(77, joints=5)), (0.0, 0.0, -9.81), 50_000, 1
     )

@@ -1,6 +1,7 @@
 """The node as a process, and a client over DDS."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -8,8 +9,10 @@ import time
 
 from dynamics_interfaces.msg import OutputState
 from dynamics_interfaces.srv import GetGravityTorque
+from rcl_interfaces.srv import SetParameters
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_sensor_data, QoSDurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
@@ -163,19 +166,25 @@ class Client:
                 continue
             return future.result()
 
+    def ask(self, kind, action=None, **fields):
+        """Call the service of the node named like its type: SetGravity is ~/set_gravity."""
+        name = re.sub('(?<=[a-z])(?=[A-Z])', '_', kind.__name__).lower()
+        return self.call(kind, f'/dynamics_node/{name}', kind.Request(**fields), action)
+
+    def set_node_parameter(self, name, value, action=None):
+        """Set a parameter of the node; return the result."""
+        # rclpy takes an empty list for bytes.
+        kind = Parameter.Type.DOUBLE_ARRAY if value == [] else None
+        message = Parameter(name, kind, value).to_parameter_msg()
+        [result] = self.ask(SetParameters, action, parameters=[message]).results
+        return result
+
     def until_heard(self, action):
         """Wait until the node receives the joint states that `action` publishes."""
         # Discovery has two sides: the client may know the subscription of the node before the
         # node knows the client.
         self.until(self.states.get_subscription_count, action)
-        self.until(
-            lambda: (
-                self.call(
-                    GetGravityTorque, '/dynamics_node/get_gravity_torque', action=action
-                ).success
-            ),
-            action,
-        )
+        self.until(lambda: self.ask(GetGravityTorque, action).success, action)
 
     def enable(self, value, action=None):
         """Enable or disable the output."""

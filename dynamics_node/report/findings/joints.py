@@ -12,7 +12,7 @@ from .context import FindingContext
 from .kinds import NOTE, WARNING
 from ..formatting import plain_number, quoted_names
 from ..report import Finding, JointEntry
-from ...dynamics import one_off_model
+from ...dynamics import RobotModel
 from ...model import build_tree
 
 # Number of corrected joints that one finding describes.
@@ -116,9 +116,8 @@ def _z_axis_effect(context: FindingContext, entry: JointEntry) -> str:
         replace(other, axis=np.array([0.0, 0.0, 1.0])) if other.name == name else other
         for other in analysis.description.joints
     )
-    model = one_off_model(
-        build_tree(replace(analysis.description, joints=joints)), analysis.model.gravity
-    )
+    tree = build_tree(replace(analysis.description, joints=joints))
+    model = RobotModel(tree, analysis.model.gravity, compile=False)
     torque = abs(analysis.worst_with(model, model.joint_names.index(name))[1])
     return (
         f"the largest gravity torque of joint '{name}' is "

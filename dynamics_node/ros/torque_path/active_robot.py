@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..parameters.model_settings import configured
-from ...dynamics import Compensation, JointSelection, one_off_model, RobotModel
+from ...dynamics import Compensation, JointSelection, RobotModel
 from ...errors import DynamicsError
 from ...model import build_tree
 from ...safety import JointStateBuffer, MotionLimits
@@ -36,9 +36,7 @@ def read_robot(source, values):
     tree = build_tree(read_urdf(source))
     if not tree.joint_names:
         raise DynamicsError('the robot has no joint that can be moved')
-    return ActiveRobot(
-        RobotModel(tree) if values['machine_code'] else one_off_model(tree), values['joints']
-    )
+    return ActiveRobot(RobotModel(tree, compile=values['machine_code']), values['joints'])
 
 
 # Joints that a message lists as beyond their position limits.

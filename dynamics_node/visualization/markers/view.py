@@ -3,11 +3,9 @@
 import numpy as np
 
 from .. import Picture
-from ...dynamics import JointSelection, one_off_model
+from ...dynamics import JointSelection, RobotModel
 from ...errors import DynamicsError
-from ...model import build_tree
 from ...ros.parameters.model_settings import tensor
-from ...urdf import read_urdf
 
 # A gravity torque that is older than this is not shown any more, s.
 TORQUE_TIMEOUT = 1.0
@@ -46,7 +44,7 @@ class RobotView:
             If the description is refused, or no joint of it can be moved.
 
         """
-        self._described = one_off_model(build_tree(read_urdf(source)), (0.0, 0.0, 0.0))
+        self._described = RobotModel.from_urdf(source, (0.0, 0.0, 0.0), compile=False)
         names = self._described.joint_names
         if not names:
             raise DynamicsError('the robot has no joint that can be moved')
