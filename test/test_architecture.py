@@ -2,10 +2,10 @@
 
 import ast
 from pathlib import Path
-import subprocess
 import sys
 
 import pytest
+from support.python_process import run_python
 
 PACKAGE = Path(__file__).parents[1] / 'dynamics_node'
 # Folder or module → those of this package that it may import.
@@ -114,12 +114,6 @@ def test_the_library_works_where_no_ros_is_installed():
         'print(robot.gravity_torque([0.0]))\n'
         'assert not any(name.startswith("rclpy") for name in sys.modules)\n'
     )
-    run = subprocess.run(
-        [sys.executable, '-c', code],
-        capture_output=True,
-        text=True,
-        cwd=PACKAGE.parent,
-        check=False,
-    )
+    run = run_python('-c', code, cwd=PACKAGE.parent)
     assert run.returncode == 0, run.stderr
     assert run.stdout.startswith('[10.3')

@@ -6,12 +6,12 @@ from pathlib import Path
 import re
 import shutil
 import subprocess
-import sys
 
 from dynamics_node import RobotModel
 import numpy as np
 import pytest
 from support.processes import Client, NodeProcess
+from support.python_process import run_python
 from support.robots import ARM7
 from test_readme import blocks
 
@@ -70,13 +70,7 @@ rclpy.shutdown()
 main()
 print(json.dumps([names, D.tolist(), refusal]))
 """
-    run = subprocess.run(
-        [sys.executable, '-c', ASK + use],
-        capture_output=True,
-        text=True,
-        timeout=60.0,
-        check=False,
-    )
+    run = run_python('-c', ASK + use, timeout=60.0)
     assert run.returncode == 0, run.stderr
     *printed, last = run.stdout.splitlines()
     names, D, refusal = json.loads(last)

@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-import subprocess
 import sys
 from types import ModuleType, SimpleNamespace
 
@@ -10,6 +9,7 @@ from dynamics_node import RobotModel
 import numpy as np
 import pytest
 from support.processes import NodeProcess
+from support.python_process import run_python
 from support.robots import ARM7
 from test_readme import blocks
 
@@ -48,13 +48,7 @@ rclpy.shutdown()
 def answers():
     node = NodeProcess(robot_description_file=ARM7)
     try:
-        run = subprocess.run(
-            [sys.executable, '-c', ASK + USE],
-            capture_output=True,
-            text=True,
-            timeout=90.0,
-            check=False,
-        )
+        run = run_python('-c', ASK + USE, timeout=90.0)
     finally:
         node.close()
     assert run.returncode == 0, run.stderr

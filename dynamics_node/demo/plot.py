@@ -62,7 +62,7 @@ def _title(outcome: Outcome, name: str) -> str:
         f'{name}: falls {outcome.largest(outcome.fall):.0f}° in {FALL_TIME:.0f} s '
         'without the node, '
         f'drifts {_small(outcome.largest(outcome.drift))} in {outcome.hold:.0f} s with it\n'
-        f'pushed by {outcome.largest(outcome.pushed):.0f}°, it stays there and drifts '
+        f'pushed, it yields {outcome.largest(outcome.pushed):.0f}°, stays there and drifts '
         f'{_small(outcome.largest(outcome.drift_after_push))} in {WATCH_TIME:.0f} s'
     )
 
@@ -118,15 +118,13 @@ def _side(tip: np.ndarray) -> np.ndarray:
 def _draw_displacement(axis: Any, outcome: Outcome) -> None:
     """Draw the displacement of each joint from its start."""
     recording = outcome.recording
-    times, way = (
-        recording.times(),
-        recording.natural(recording.positions() - outcome.poses['start']),
-    )
+    times = recording.times() - recording.phases[0].start
+    way = recording.natural(recording.positions() - outcome.poses['start'])
     for row, name in enumerate(recording.names):
         unit = '' if recording.turning[row] else ' [mm]'
         axis.plot(times, way[:, row], lw=1.8, color=_color(row), label=name + unit)
     _shade(axis, recording.phases, wide=True)
-    axis.set_ylabel('displacement [°]')
+    axis.set_ylabel('displacement [° or mm]')
     axis.legend(fontsize=8, loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False)
     axis.grid(alpha=0.25)
     axis.tick_params(labelbottom=False)
@@ -135,27 +133,24 @@ def _draw_displacement(axis: Any, outcome: Outcome) -> None:
 def _draw_effort(axis: Any, outcome: Outcome) -> None:
     """Draw the motor efforts."""
     recording = outcome.recording
-    times, efforts = recording.times(), recording.efforts()
+    times, efforts = recording.times() - recording.phases[0].start, recording.efforts()
     for row in range(len(recording.names)):
         axis.plot(times, efforts[:, row], lw=1.5, color=_color(row))
     _shade(axis, recording.phases, wide=False)
-    axis.set(
-        ylabel='motor effort [N m]',
-        xlabel='time [s]',
-        xlim=(recording.phases[0].start - LEAD_IN, times[-1]),
-    )
+    axis.set(ylabel='motor effort [N m or N]', xlabel='time [s]', xlim=(-LEAD_IN, times[-1]))
     axis.grid(alpha=0.25)
 
 
 def _shade(axis: Any, phases: list[Phase], wide: bool) -> None:
     """Color the background by phase; name wide phases above it, narrow ones inside."""
-    total = phases[-1].end - phases[0].start
+    origin, total = phases[0].start, phases[-1].end - phases[0].start
     for phase in phases:
-        axis.axvspan(phase.start, phase.end, color=PHASE_COLORS[phase.name], alpha=0.55, lw=0)
-        if wide != (phase.end - phase.start > NARROW * total):
+        start, end = phase.start - origin, phase.end - origin
+        axis.axvspan(start, end, color=PHASE_COLORS[phase.name], alpha=0.55, lw=0)
+        if wide != (end - start > NARROW * total):
             continue
         axis.text(
-            (phase.start + phase.end) / 2,
+            (start + end) / 2,
             1.02 if wide else 0.04,
             phase.name,
             fontsize=9,

@@ -1,37 +1,18 @@
 """The complete demo, with its exit codes."""
 
 from pathlib import Path
-import subprocess
-import sys
 
 from dynamics_node.demo.__main__ import main
 from PIL import Image
 import pytest
+from support.python_process import run_python
 
 
-@pytest.fixture
-def demo(child_environment, tmp_path):
-    """Return a function that runs the demo to its end: exit code and output."""
-
-    def run(*arguments):
-        done = subprocess.run(
-            [sys.executable, '-m', 'dynamics_node.demo.__main__', *arguments],
-            cwd=tmp_path,
-            env=child_environment,
-            timeout=280,
-            text=True,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-        )
-        return done.returncode, done.stdout
-
-    return run
-
-
-def test_the_demo_succeeds_and_draws_its_figure(demo, tmp_path):
-    code, output = demo('--hold', '1')
-    assert code == 0, output
-    assert 'shoulder_pitch' in output and 'It falls without the node' in output
+def test_the_demo_succeeds_and_draws_its_figure(child_environment, tmp_path):
+    module = 'dynamics_node.demo.__main__'
+    run = run_python('-m', module, '--hold', '1', cwd=tmp_path, env=child_environment, timeout=280)
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert 'shoulder_pitch' in run.stdout and 'It falls without the node' in run.stdout
     with Image.open(tmp_path / 'demo.png') as figure:
         assert figure.size == (1440, 1200)
 

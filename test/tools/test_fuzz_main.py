@@ -1,28 +1,13 @@
-"""`python -m fuzz`: no findings in the package, and `--replay`."""
+"""`python -m fuzz`: no findings in the package, `--replay`, and digests of errors."""
 
-import os
-from pathlib import Path
 import re
-import subprocess
-import sys
 
-ROOT = Path(__file__).parents[2]
-
-
-def fuzz(*arguments):
-    """Run `python -m fuzz` as a process."""
-    return subprocess.run(
-        [sys.executable, '-m', 'fuzz', *map(str, arguments)],
-        text=True,
-        capture_output=True,
-        cwd=ROOT / 'tools',
-        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
-        check=False,
-    )
+from fuzz.error_digest import error_digest
+from support.python_process import run_tool
 
 
 def test_two_thousand_inputs_find_nothing(tmp_path):
-    run = fuzz('--inputs', 2000, '--folder', tmp_path)
+    run = run_tool('fuzz', '--inputs', 2000, '--folder', tmp_path)
     assert run.returncode == 0, run.stdout + run.stderr
     assert re.search(r'^ *inputs +1000 +1000 *$', run.stdout, re.M)
     assert re.search(r'^ *findings +0 +0 *$', run.stdout, re.M)
@@ -36,8 +21,18 @@ def test_two_thousand_inputs_find_nothing(tmp_path):
 def test_an_input_is_replayed(tmp_path):
     description = tmp_path / 'a.urdf'
     description.write_text('<robot')
-    run = fuzz('--replay', description)
+    run = run_tool('fuzz', '--replay', description)
     assert run.stdout == "['refused: it is not XML: unclosed token, line']\n", run.stderr
-    run = fuzz('--replay', tmp_path)
+    run = run_tool('fuzz', '--replay', tmp_path)
     assert run.returncode == 2
     assert 'expected a file ending in .urdf or .hex' in run.stderr
+
+
+def test_a_digest_omits_names_and_numbers():
+    assert error_digest("link 'a b': <mass> value: expected a finite number, got '1e999'") == (
+        'link …: … value: expected a finite'
+    )
+    assert error_digest('link "it\'s": mass is -2.5 kg, must be >= 0') == (
+        'link …: mass is … kg, must'
+    )
+    assert error_digest(r"link 'a\'b' is defined 2 times") == 'link … is defined … times'

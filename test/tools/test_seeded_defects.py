@@ -1,15 +1,11 @@
 """Seeded defects: each is detected by its target."""
 
 import json
-import os
-from pathlib import Path
-import subprocess
-import sys
 
 from fuzz.seeded_defects import SEEDED
 import pytest
+from support.python_process import run_tool
 
-ROOT = Path(__file__).parents[2]
 DETECTED = {
     'nothing in a description': "['taken",
     'a file is opened': "OpenedError: open ('/dev/null'",
@@ -35,14 +31,7 @@ DETECTED = {
 @pytest.fixture(scope='module')
 def responses():
     """Return the answer of a target for each defect."""
-    run = subprocess.run(
-        [sys.executable, '-m', 'fuzz.seeded_defects'],
-        capture_output=True,
-        text=True,
-        cwd=ROOT / 'tools',
-        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
-        check=False,
-    )
+    run = run_tool('fuzz.seeded_defects')
     assert run.returncode == 0, run.stderr
     return json.loads(run.stdout)
 
