@@ -11,7 +11,8 @@ help: ## This list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 12
 
 demo: ## A simulated arm held by the node; ROBOT=path.urdf: another robot, VIEW=1: in a window
-	@bash scripts/demo.sh
+	@$(run) demo python -m dynamics_node.demo $(if $(ROBOT),--robot "$(ROBOT)") \
+	$(if $(filter-out 0 no false,$(VIEW)),--view)
 
 report: ## What a URDF contains, and what is wrong with it: ROBOT=path.urdf; ARGS='...': see ARGS=--help
 	@$(run) demo python -m dynamics_node.report "$(or $(ROBOT),config/robots/arm7.urdf)" $(ARGS)
@@ -33,7 +34,7 @@ pictures: ## Draw the pictures of the documents; ARGS='...': only some, see scri
 	@$(run) demo python scripts/make_pictures.py $(ARGS)
 
 lint: ## ruff and mypy
-	@$(run) test bash -c 'ruff check . && ruff format --check . && python -m mypy dynamics_node benchmarks'
+	@$(run) test bash -c 'ruff check . && ruff format --check . && codespell && python -m mypy dynamics_node benchmarks'
 
 build: ## Install what is missing and build both packages with colcon
 	@$(run) demo echo 'Built. Next: make demo, make test or make shell.'

@@ -106,7 +106,7 @@ if ! venv_is_usable; then
     [[ $mode != wheels ]] || check_platform
     check_build_tools
     find_uv
-    [[ -d $venv ]] || say "First set-up: about 3 minutes, and 1.5 GB in $venv."
+    [[ -d $venv ]] || say "First set-up: about 3 minutes, and 1 GB in $venv."
     make_venv
 fi
 find_uv

@@ -38,11 +38,11 @@ def main(args=None):
         if it left an effort in force.
 
     """
-    # First of all, and rclpy after it: importing takes seconds, and Ctrl-C may come then.
+    # Before rclpy: importing takes seconds, and Ctrl-C may come meanwhile.
     signals = Signals()
     if os.isatty(2):
         os.environ.setdefault('RCUTILS_COLORIZED_OUTPUT', '1')
-    # A terminal that is paused, or a pipe that is not read, must not hold up the arm.
+    # A paused terminal or an unread pipe must not block the arm.
     outputs = [UnblockedOutput(descriptor) for descriptor in (1, 2)]
     try:
         return _run(args, signals)
@@ -52,7 +52,7 @@ def main(args=None):
 
 
 def _run(args, signals):
-    gc.disable()  # until everything is loaded: importing makes much and drops nothing
+    gc.disable()  # until everything is loaded: importing only allocates
     import rclpy
     import rclpy.logging
     from rclpy.signals import SignalHandlerOptions
@@ -102,7 +102,7 @@ class _Loop:
         self._signals = signals
         self._failures = 0
         self._failing_since = 0.0
-        # The wait of the events executor ends by itself, for it may not last for ever.
+        # The events executor must wait with a timeout: no task ends its wait.
         from rclpy.executors import SingleThreadedExecutor
 
         self._timeout = None if isinstance(executor, SingleThreadedExecutor) else 0.1
@@ -139,8 +139,8 @@ class _Loop:
             self._executor.spin_once(timeout)
             self._failures = 0
         except Exception as error:
-            # Not from the node's callbacks, which let nothing out, but rclpy has some of its
-            # own: a parameter of an unknown type raises in its parameter services.
+            # The node's callbacks raise nothing, but rclpy has some of its own: a parameter
+            # of an unknown type raises in its parameter services.
             self._failures += 1
             if self._failures == 1:
                 self._failing_since = time.monotonic()
@@ -187,14 +187,14 @@ def _do_nothing():
 
 
 def _spare_the_garbage_collector():
-    # What start-up has made stays for good. Without this, all of it, numba's half a million
-    # objects, would be looked through in the middle of a control cycle.
+    # Objects of the start live as long as the process. Without this, half a million of them
+    # (numba's) would be traversed in the middle of a control cycle.
     gc.freeze()
     gc.enable()
 
 
 def _load_the_rest():
-    # Imported by the first service that needs it, it would hold up the control loop for half a
+    # An import by the first service that needs it would block the control loop for half a
     # second.
     import scipy.interpolate
     import scipy.spatial.transform  # noqa: F401

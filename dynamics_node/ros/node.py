@@ -31,11 +31,11 @@ from .torque_path.publisher_monitor import PublisherMonitor
 from ..errors import DynamicsError
 from ..safety import EffortLimiter, GravityChange
 
-# Other publishers and the controllers are looked for this often, s: behind a joint state, because
-# a wake-up of its own costs as much as a state, or else at the next tick of the output.
+# Period of the checks of publishers and controllers, s. They run after a joint state, or at the
+# next tick of the output, because a wake-up of their own would cost as much as a state.
 CHECK_EVERY = 0.2
 SECOND = 1.0
-# Shortest time between two warnings of the same joints that are not measured, s.
+# Shortest time between two warnings about unmeasured joints, s.
 SILENT_EVERY = 10.0
 
 
@@ -106,7 +106,7 @@ class DynamicsNode(Node):
         return self.path.is_driving
 
     def _described(self, source, origin):
-        # True if it was taken, or refused for good; False if it may be offered again.
+        # True if it was accepted or refused; False if it must be offered again.
         if self.path.is_on:
             self.logger.warning(
                 f'new robot description from {origin} waits until the output is '
@@ -127,8 +127,8 @@ class DynamicsNode(Node):
             self.logger.error(f'robot description from {origin} refused, {kept}: {error}')
             return True
         if self.parameters['machine_code']:
-            # In another process; the general kernel answers meanwhile. For payloads too: when
-            # one comes, the arm may float, and nothing should be started then.
+            # In another process; the general kernel computes meanwhile. Also the variant for
+            # payloads: no compiler may start while the arm floats.
             robot.model.specialize(wait=False, with_payload_code=True)
         is_first = self._shared.robot is None
         self._shared.robot = robot
@@ -179,7 +179,7 @@ class DynamicsNode(Node):
         self._external_torque.configure()
 
     def on_state(self, stamp):
-        """Publish what follows from a joint state besides the command, which has gone out."""
+        """Publish the results of a joint state; its command has already been published."""
         robot, effort = self._shared.robot, self.path.gravity_torque
         assert robot is not None  # without a robot there is no state
         if not all(map(math.isfinite, effort.tolist())):
@@ -200,7 +200,7 @@ class DynamicsNode(Node):
 
     def _check_if_due(self):
         now = time.monotonic()
-        # A controller that has just begun to listen gets the whole effort until it is noticed.
+        # A new subscriber receives the full effort until it is noticed.
         if now < self._next_check and not self.output.has_new_listener():
             return
         self._next_check = now + CHECK_EVERY

@@ -12,7 +12,7 @@ _KINDS = {
     'joints': ParameterType.PARAMETER_STRING_ARRAY,
     'interface_name': ParameterType.PARAMETER_STRING,
 }
-# Then a question counts as lost, s.
+# A request without an answer counts as lost after this time, s.
 LOST_AFTER = 2.0
 
 
@@ -35,7 +35,7 @@ class ControllerParameters:
 
     def __init__(self, node, topic):
         """
-        Ask nothing yet.
+        Start without any request.
 
         Parameters
         ----------
@@ -54,7 +54,7 @@ class ControllerParameters:
 
     @logged
     def ask(self):
-        """Take over what was answered, and ask again; to be called now and then."""
+        """Take over the answers, and ask again; called once a second."""
         names = self._names()
         for name in set(self._listeners) - names:
             self._listeners.pop(name).close()
@@ -87,7 +87,7 @@ class ControllerParameters:
             if len(different) == 1
             else [f'{name}: {" ".join(names)}' for name, names in joints.items()] or None,
         )
-        # The one that speaks against efforts, if there is one.
+        # The listener that refuses efforts, if there is one.
         self._declare(
             'interface_name', min(interfaces, key=lambda name: name == 'effort', default=None)
         )
@@ -128,7 +128,7 @@ class ControllerParameters:
 
 
 class _Listener:
-    """What one listener is asked, and what it answered last."""
+    """The open request to one listener, and its last answer."""
 
     def __init__(self, node, name):
         self.values = {}
@@ -166,7 +166,7 @@ class _Listener:
         self._futures = {}
 
     def close(self):
-        """Ask no more."""
+        """Destroy the client."""
         if self._client is not None:
             self._forget()
             self._node.destroy_client(self._client)

@@ -11,7 +11,7 @@ from ..support.process import Signals, UnblockedOutput
 # Time that the fade may take after a signal, and after a second one, s; launch kills after 5.
 STOP_WITHIN = 2.5
 HURRY_WITHIN = 0.3
-# Then what is left ends at once, s.
+# After this time the remaining effort goes to zero at once, s.
 GIVE_UP_AFTER = 3.0
 # For the controller to acknowledge the last command, s.
 ACKNOWLEDGE_WITHIN = 0.5
@@ -72,7 +72,7 @@ def _spin(node, signals):
     executor.add_node(node)
     signals.call(node.create_guard_condition(lambda: None).trigger)
     gc.collect()
-    gc.freeze()  # what the start has made stays, and is not looked through again
+    gc.freeze()  # objects of the start live as long as the process: not collected again
     while not signals.count:
         _spin_once(node, executor)
     is_left = not _bring_to_rest(node, executor, signals)
@@ -85,13 +85,13 @@ def _spin_once(node, executor):
     try:
         executor.spin_once()
     except Exception as error:
-        # Not from our callbacks, which let nothing out, but rclpy has some of its own.
+        # Our callbacks raise nothing, but rclpy has some of its own.
         node.logger.error(f'error in rclpy: {error}\n{traceback.format_exc()}')
-        time.sleep(0.01)  # one that keeps coming must not take the processor from the timer
+        time.sleep(0.01)  # a repeated error must not take the processor from the timer
 
 
 def _bring_to_rest(node, executor, signals):
-    # Whether no effort is left.
+    # True if no effort is left.
     guard = node.guard
     if not guard.has_effort:
         return True

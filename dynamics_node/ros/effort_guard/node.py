@@ -21,9 +21,9 @@ from ..support.qos import COMMAND, NO_EVENTS, OUTPUT_STATE, RESULT
 from ..support.throttling import Throttle
 from ...safety.effort_guard import EffortGuard, GuardSettings, MAX_TICK, PERIODS
 
-# How often the guard looks at the graph, s: who sends, who listens.
+# Period of the checks of publishers and subscribers, s.
 GRAPH_EVERY = 0.5
-# How often a warning about what lasts is repeated, s.
+# Period at which a lasting warning is repeated, s.
 WARN_EVERY = 10.0
 
 
@@ -163,7 +163,7 @@ class EffortGuardNode(Node):
         self._look_timer.reset()
 
     def _changed(self, state, reason):
-        # Told after the command has gone out, which nothing may delay.
+        # Logged after the command has been published, which nothing may delay.
         self._changes.append((state, reason))
 
     def _tell(self):
@@ -243,7 +243,7 @@ class EffortGuardNode(Node):
         if self.guard.has_effort and not self._publisher.get_subscription_count():
             remarks.append(f'nothing listens on {self._output} any more')
         if self.guard.slow_period() is not None:
-            # Without the number, which changes.
+            # Without the changing number.
             remarks.append(
                 f'commands come too slowly: fewer than {PERIODS} within the timeout of '
                 f'{self._settings.timeout:g} s; raise timeout, or the rate of the '

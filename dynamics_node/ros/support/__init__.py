@@ -1,6 +1,6 @@
 """
-Parts of ROS 2 that several rooms of the node use: errors, executors, qualities of service, hints.
+Use of rclpy in all rooms of the node: errors, executors, quality of service, hints, process.
 
-What may change here: how rclpy is used. Nothing in here knows dynamics.
+What may change here: how rclpy is used. No dynamics in here.
 
 """

@@ -5,7 +5,7 @@ import time
 import traceback
 import weakref
 
-# An error that keeps coming is logged at most this often per callback, s.
+# Shortest time between two logged errors of one callback, s.
 LOG_EVERY = 1.0
 
 
@@ -24,7 +24,7 @@ def guarded(method):
         try:
             return method(self, *arguments)
         except Exception as error:
-            # The stop first: to write a log may take long.
+            # The stop first: logging may take long.
             self.on_internal_error(f'internal error in {method.__name__}: {error}')
             log(self, error)
             return None
@@ -33,7 +33,7 @@ def guarded(method):
 
 
 def logged(method):
-    """Wrap a callback that no torque depends on: an exception is only logged."""
+    """Wrap a callback off the torque path: an exception is only logged."""
     log = _ErrorLog(method)
 
     @functools.wraps(method)
@@ -68,11 +68,11 @@ def guarded_service(method):
 
 
 class _ErrorLog:
-    """Logs the errors of one callback, and how many were left out in between."""
+    """Logs the errors of one callback, and the number omitted in between."""
 
     def __init__(self, method):
         self._name = method.__name__
-        # Owner → when the next report is due, and how many errors were left out.
+        # Owner → time of the next report, s, and number of errors omitted.
         self._reports: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
 
     def __call__(self, owner, error):

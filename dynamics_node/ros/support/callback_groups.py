@@ -1,13 +1,14 @@
-"""Callback groups: the torque path always runs, services only now and then beside it."""
+"""Callback groups: the torque path always runs, services only in short windows beside it."""
 
 import time
 
 from rclpy.callback_groups import CallbackGroup, ReentrantCallbackGroup
 
-# While efforts are sent, the services are waited for this often, for this long, and for this
-# long after a request, s.
+# While efforts are sent, services run in windows of this period, s.
 EVERY = 0.1
+# Length of a window, s.
 WINDOW = 0.001
+# Length of a window after a request, s.
 BURST = 0.25
 
 
@@ -25,7 +26,7 @@ class ServiceGroup(CallbackGroup):
     Leaves services out of most waits while efforts are sent.
 
     rclpy prepares every wait anew, entity by entity, and waits twice for every joint state: a
-    dozen services that are hardly ever called cost more than the torque. While the output is on,
+    dozen rarely called services cost more than the torque. While the output is on,
     a request waits up to EVERY longer; those that follow it do not.
 
     """
@@ -48,8 +49,8 @@ class ServiceGroup(CallbackGroup):
         self._open_until = self._closed_until = 0.0
 
     def can_execute(self, entity):
-        """Tell whether a service is waited for now."""
-        # Asked for every service in every wait: the usual answer comes first.
+        """Return whether services are waited for now."""
+        # Called for every service in every wait: the usual case comes first.
         now = self._clock()
         if now < self._open_until:
             return True
@@ -60,9 +61,9 @@ class ServiceGroup(CallbackGroup):
         return True
 
     def beginning_execution(self, entity):
-        """Note that a request is answered: others may follow."""
+        """Open a longer window: more requests may follow."""
         self._open_until = self._clock() + BURST
         return True
 
     def ending_execution(self, entity):
-        """Do nothing: one thread runs one callback at a time."""
+        """Nothing to release: one thread runs one callback at a time."""

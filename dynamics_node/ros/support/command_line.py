@@ -27,7 +27,7 @@ def parse(arguments):
 
 def parser():
     """
-    Return what reads the options, for the process and for docs/reference.md.
+    Return the argument parser, for the process and for docs/reference.md.
 
     Returns
     -------

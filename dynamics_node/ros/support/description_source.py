@@ -11,7 +11,7 @@ class DescriptionSource:
     Delivers each new description once.
 
     The parameter `robot_description` wins over `robot_description_file`, and both over the
-    topic; the node's log says which one it was.
+    topic; the log names the one in use.
 
     """
 
@@ -34,7 +34,7 @@ class DescriptionSource:
         self._node, self._parameters = context.node, context.parameters
 
     def begin(self):
-        """Deliver what is there and listen for more."""
+        """Deliver the description of a parameter, or subscribe to the topic."""
         parameters, on_description = self._parameters, self._on_description
         if parameters['robot_description']:
             # Bytes are always text, so that a text is never taken for a path.
@@ -67,12 +67,12 @@ class DescriptionSource:
 
     @logged
     def offer_pending(self):
-        """Deliver a text that had to wait, while it is the newest."""
+        """Deliver a postponed text if it is still the newest."""
         if self._pending is not None:
             self._offer(self._pending)
 
     def offer_again(self):
-        """Deliver the newest text once more: what it was refused for may have changed."""
+        """Deliver the newest text again: the reason of its refusal may have changed."""
         if self._last is not None:
             text, self._last = self._last, None
             self._received(String(data=text))

@@ -10,15 +10,15 @@ from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
 
 EXECUTORS = ('rclpy', 'events')
-# The self-test of an executor: longest time for all of it, and for a wait in which nothing
-# happens, s; part of the second that may be spent computing.
+# Self-test of an executor: longest duration, duration of an idle wait, s, and the part of the idle
+# wait that may be spent computing.
 TEST_WITHIN = 5.0
 IDLE = 0.2
 BUSY_SHARE = 0.5
 
 
 class UnsoundExecutorError(RuntimeError):
-    """The chosen executor does not do on this computer what the node needs."""
+    """The chosen executor fails its self-test on this computer."""
 
 
 def make_executor(choice):
@@ -57,8 +57,8 @@ def make_executor(choice):
 
 
 def _self_test(kind):
-    # Returns what does not work, '' if everything does: a timer, a message, a service that
-    # answers late, and a wait that costs nothing.
+    # Returns the failed parts, '' if there are none: a timer, a message, a deferred service
+    # response, and an idle wait.
     executor = kind()
     probe = _Probe()
     try:
@@ -85,7 +85,7 @@ def _self_test(kind):
 
 
 class _Probe(Node):
-    """Uses what the node uses, under a name of its own."""
+    """A node with the kinds of callbacks that the dynamics node has."""
 
     def __init__(self):
         super().__init__(
@@ -105,19 +105,19 @@ class _Probe(Node):
         self._late = Future()
 
     def missing(self):
-        """Return what has not worked yet, a list of str."""
+        """Return the parts that have not worked yet, a list of str."""
         if self._call is not None and self._call.done():
             self._done['late answer'] = True
         return [name for name, is_done in self._done.items() if not is_done]
 
     def go_on(self):
-        """Do what needs a partner as soon as there is one."""
+        """Publish and call as soon as the partners are discovered."""
         self._publisher.publish(Empty())
         if self._call is None and self._client.service_is_ready():
             self._call = self._client.call_async(Trigger.Request())
 
     def rest(self):
-        """Cause nothing any more."""
+        """Stop the timer."""
         self._timer.cancel()
 
     def _ticked(self):

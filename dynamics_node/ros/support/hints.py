@@ -1,4 +1,4 @@
-"""What the log says when the node waits for something: what is missing, and what to type."""
+"""Log hints while the node waits: the missing input, and the command that provides it."""
 
 from collections import Counter
 import time
@@ -9,24 +9,24 @@ from .messages import type_name
 from .throttling import Throttle
 from ...errors import quoted
 
-# Seconds without a description or without joint states after which there is a hint.
+# Time without a description or joint states after which a hint is logged, s.
 PATIENCE = 5.0
-# The shortest time between two of them, s.
+# Shortest time between two hints, s.
 REPEAT_EVERY = 10.0
-# Seconds without any message after which none is said to come; `give` is called once a second.
+# Time without any message after which the topic counts as silent, s.
 QUIET = 2.0
-# Names that a hint shows of a list.
+# Maximum number of names in a hint.
 SHOWN = 8
-# How drivers call joint states that are not complete or not filtered.
+# Endings of topics with incomplete or unfiltered joint states.
 _STATES = ('', '_raw', '_unfiltered')
 
 
 class Hints:
-    """Looks now and then whether the node still waits, and says how to go on."""
+    """Logs a hint while the node waits for its inputs."""
 
     def __init__(self, context, source, states, now=time.monotonic):
         """
-        Begin to wait.
+        Start the waiting time.
 
         Parameters
         ----------
@@ -49,7 +49,7 @@ class Hints:
         self._messages, self._last_message = 0, self._start
 
     def give(self):
-        """Log what is missing and what to type, if something is missing for too long."""
+        """Log a hint if an input has been missing for too long."""
         robot = self._context.robot
         if robot is not None:
             self._count_messages(robot.buffer)
@@ -118,7 +118,7 @@ class Hints:
         return '\n  '.join(lines)
 
     def _heard_elsewhere(self, subscription, name, endings=('',)):
-        # First who is there and not heard, then who is somewhere else.
+        # First incompatible publishers on the topic, then publishers on similar topics.
         texts = mismatches(self._node, subscription)
         if texts:
             return [f'{text}.' for text in texts]
@@ -141,7 +141,7 @@ class Hints:
 
 def unheard(node, publisher):
     """
-    Return what to say of commands to which nothing listens.
+    Return the hint for a command topic without subscribers.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def unheard(node, publisher):
         )
     namespace, _, controller = topic.rpartition('/')[0].rpartition('/')
     manager = _manager(namespace)
-    # Only who listens before the output is on sees the ramp.
+    # Only a subscriber that exists before the output is on gets the ramp.
     return (
         'nothing listens there: call ~/enable with false first, because a controller that '
         'begins to listen now gets the whole effort at once; then look with  ros2 control '
@@ -176,12 +176,12 @@ def unheard(node, publisher):
 
 
 def _manager(namespace):
-    # What `ros2 control` needs besides in a namespace: without it, it waits for ever.
+    # `ros2 control` waits for ever in a namespace without this option.
     return f' --controller-manager {namespace}/controller_manager' if namespace else ''
 
 
 def _about_names(robot, missing, heard, topic, rejected):
-    # Messages come, but nothing that can be used of these joints.
+    # Messages arrive, but without usable values of these joints.
     lines = [
         f'There come {_some([quoted(name) for name in heard])}: look with  '
         f'ros2 topic echo --once {topic}'
@@ -212,7 +212,7 @@ def _about_names(robot, missing, heard, topic, rejected):
 
 
 def _prefix(missing, heard):
-    """Return what stands before every missing name in the names heard, '' if nothing does."""
+    """Return the prefix of every missing name in the received names, '' if there is none."""
     for name in heard:
         if name.endswith(missing[0]):
             prefix = name[: len(name) - len(missing[0])]
@@ -226,15 +226,15 @@ def _some(names):
     return ', '.join(names[:SHOWN]) + (f' and {more} more' if more > 0 else '')
 
 
-# A hint names at most so many topics: it shall be read.
+# Maximum number of topics named in a hint.
 MOST = 3
-# Controllers take arrays of numbers on topics of the same name, whatever the numbers mean.
+# Names of controllers whose command topics have the same type but take no efforts.
 _NO_EFFORT = ('position', 'velocity', 'acceleration', 'trajectory')
 
 
 def published_elsewhere(node, subscription, endings=('',)):
     """
-    Return topics that others publish which are like a subscription's but for their name.
+    Return published topics of the same type with a similar name.
 
     Parameters
     ----------
@@ -261,7 +261,7 @@ def published_elsewhere(node, subscription, endings=('',)):
 
 def listened_elsewhere(node, publisher):
     """
-    Return topics of efforts that others listen to which are like a publisher's but for their name.
+    Return subscribed topics of the same type with a similar name, for efforts.
 
     Parameters
     ----------
@@ -292,10 +292,10 @@ def _like(node, own, kind, endings, count):
 
 def mismatches(node, subscription):
     """
-    Return why publishers on a topic are not heard.
+    Return why the messages of publishers on a topic do not arrive.
 
-    rclpy would notice by itself, but only by waiting for two more events together with every
-    message; so the node looks when a message is missing.
+    rclpy reports this by two more events per subscription, which cost time in every wait; so the
+    node checks when a message is missing.
 
     Parameters
     ----------
@@ -310,7 +310,7 @@ def mismatches(node, subscription):
 
     """
     own = type_name(subscription.msg_type)
-    # What is really in force: it may have been overridden by parameters.
+    # The profile in force: parameters may have overridden it.
     wanted = [
         info.qos_profile
         for info in node.get_subscriptions_info_by_topic(subscription.topic_name)

@@ -1,4 +1,4 @@
-"""Messages: the fast ways between them and numpy, and their names."""
+"""Fast conversion between message fields and numpy arrays, and names of message types."""
 
 from array import array
 
@@ -7,7 +7,7 @@ import numpy as np
 
 def to_field(values):
     """
-    Return an array as what a float64[] field takes fastest.
+    Return an array in the type that a float64[] field accepts fastest.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""SIGINT, SIGTERM, SIGHUP and SIGQUIT: noticed from the first moment, acted on in the loop."""
+"""Signals that end the process, and standard output that never blocks it."""
 
 import os
 import signal
@@ -7,8 +7,10 @@ import sys
 import threading
 import time
 
-# Signals closer together than this count as one: a terminal and `ros2 launch` both send SIGINT, s.
+# Signals within this time count as one, s: a terminal and `ros2 launch` both send SIGINT.
 SAME_SIGNAL = 0.5
+# Longest wait at the end for a terminal or a pipe that is not read, s.
+CLOSE_WITHIN = 0.5
 STOPPING_SIGNALS = ('SIGINT', 'SIGTERM', 'SIGHUP', 'SIGQUIT')
 
 
@@ -16,7 +18,7 @@ class Signals:
     """
     Counts the signals that ask the process to end.
 
-    The first one stops the output by its ramp, the second one hastens the stop, the third one
+    The first one stops the output by its ramp, the second one shortens the stop, the third one
     ends the process at once.
 
     Attributes
@@ -52,7 +54,7 @@ class Signals:
 
     def call(self, wake):
         """
-        Call something as soon as a signal comes, from a thread of its own.
+        Set the function that ends the wait of the main loop when a signal comes.
 
         A wait inside rclpy does not end by a signal, and Python runs no handler before it ends.
 
@@ -71,7 +73,7 @@ class Signals:
             while reader.recv(1):
                 try:
                     wake()
-                except Exception:  # the node is gone already: no wait is left to end
+                except Exception:  # the node has been destroyed: no wait is left to end
                     return
 
         threading.Thread(target=watch, name='signals', daemon=True).start()
@@ -87,17 +89,13 @@ class Signals:
         if self.count > 1 and not self._has_started:
             sys.exit(0)  # no effort has been sent yet
         if self.count > 2:
-            # Whatever the loop is doing: the user insists. The effort may stay in force.
+            # The user insists. The effort may stay in force.
             sys.exit(1)
-
-
-# Longest wait at the end for a terminal or a pipe that is not read, s.
-CLOSE_WITHIN = 0.5
 
 
 class UnblockedOutput:
     """
-    Takes the place of a file descriptor; what it cannot pass on at once is dropped.
+    Replaces a file descriptor by a pipe; output that would block is dropped.
 
     A terminal that is paused by Ctrl-S, or a pipe whose reader has stopped, blocks the process in
     its next log line, and with it the arm.

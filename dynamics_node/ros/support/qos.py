@@ -20,7 +20,7 @@ def _newest(reliability, durability=QoSDurabilityPolicy.VOLATILE, depth=1):
     )
 
 
-# Places in the queue of joint_states, for one publisher and for several.
+# Depth of the queue of joint_states, for one publisher and for several.
 SINGLE_DEPTH, SHARED_DEPTH = 1, 8
 # rclpy's default policies leave out the durability.
 JOINT_STATES_OVERRIDES = QoSOverridingOptions(
@@ -48,14 +48,14 @@ def joint_states(several_publishers):
     )
 
 
-# As robot_state_publisher publishes it: whoever comes later still gets it.
+# As robot_state_publisher publishes it: late subscribers still receive it.
 ROBOT_DESCRIPTION = _newest(QoSReliabilityPolicy.RELIABLE, QoSDurabilityPolicy.TRANSIENT_LOCAL)
 OUTPUT_STATE = ROBOT_DESCRIPTION
 COMMAND = _newest(QoSReliabilityPolicy.RELIABLE)
 RESULT = COMMAND
 
-# rclpy waits for two events of every publisher and subscription, only to warn of partners that
-# cannot match, and each costs a twentieth of the processor time of a joint state. The partners
-# warn, too, and `mismatch.py` says it when something is missing.
+# rclpy waits for two events of every publisher and subscription, only to warn of incompatible
+# partners; each costs 5 % of the processor time of a joint state. The partners warn, too, and
+# `hints.py` reports it when an input is missing.
 NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 NO_SUBSCRIPTION_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)

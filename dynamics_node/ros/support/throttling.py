@@ -1,21 +1,23 @@
-"""A warning at most once a second, at no cost in between."""
+"""Periodic tasks without timers: throttled logging, measured rates, cached subscriber counts."""
 
 import time
+
+# Period of the queries for subscribers, s: far below the time of discovery.
+ASK_EVERY = 0.05
 
 
 class Throttle:
     """
-    Says when a message that keeps coming is due again.
+    Limits how often a repeated message is logged.
 
-    rclpy's own `throttle_duration_sec` looks through the source files for its caller at every
-    call, logged or not: near a millisecond, in a callback that may come a thousand times a
-    second.
+    rclpy's own `throttle_duration_sec` searches the source files for its caller at every call,
+    logged or not: about 1 ms, in a callback that may run at 1 kHz.
 
     """
 
     def __init__(self, period, clock=time.monotonic):
         """
-        Start due.
+        Let the first message pass.
 
         Parameters
         ----------
@@ -30,7 +32,7 @@ class Throttle:
         self._next = float('-inf')
 
     def is_due(self):
-        """Tell whether the message may be logged now; if so, the period begins again."""
+        """Return whether the message may be logged now; if so, restart the period."""
         now = self._clock()
         if now < self._next:
             return False
@@ -40,7 +42,7 @@ class Throttle:
 
 class Rate:
     """
-    How often something happens, from a counter that is read now and then.
+    Rate of an event, from a counter that is read from time to time.
 
     Attributes
     ----------
@@ -50,7 +52,6 @@ class Rate:
     """
 
     def __init__(self):
-        """Begin at zero."""
         self.value = 0.0
         self._last = (0.0, 0)
 
@@ -63,7 +64,7 @@ class Rate:
         now : float
             s.
         count : int
-            A smaller one than before begins anew.
+            A smaller count than before restarts the measurement.
 
         """
         before, earlier = self._last
@@ -71,35 +72,30 @@ class Rate:
         self._last = (now, count)
 
 
-# The longest that a new listener waits for its first message, s: far below what finding each
-# other takes.
-ASK_EVERY = 0.05
-
-
 class HasSubscribers:
     """
-    Knows whether a publisher has listeners.
+    Tells whether a publisher has subscribers.
 
-    The middleware takes longer to answer that than a state takes to become a torque.
+    Querying the subscriber count costs more than computing a torque, so it is cached.
 
     """
 
     def __init__(self, publisher, period=ASK_EVERY):
         """
-        Know nothing yet.
+        Query at the first use.
 
         Parameters
         ----------
         publisher : rclpy.publisher.Publisher
         period : float
-            Longest time for which an answer is taken to hold, s.
+            Time for which a count is cached, s.
 
         """
         self._publisher = publisher
         self._due = Throttle(period)
-        self._has_listeners = False
+        self._has_subscribers = False
 
     def __bool__(self):
         if self._due.is_due():
-            self._has_listeners = self._publisher.get_subscription_count() > 0
-        return self._has_listeners
+            self._has_subscribers = self._publisher.get_subscription_count() > 0
+        return self._has_subscribers

@@ -39,13 +39,13 @@ def read_robot(source, values):
     return ActiveRobot(RobotModel(tree, compile=values['machine_code']), values['joints'])
 
 
-# Joints that a message lists as beyond their position limits.
+# Maximum number of joints that a message lists as beyond their position limits.
 _MOST_SHOWN = 8
 _ROUNDING = 1e-9
 
 
 class StateUnavailableError(DynamicsError):
-    """The newest measured state was asked for, and there is none that is fresh."""
+    """The newest measured state was requested, and it is too old or missing."""
 
 
 class ActiveRobot:
@@ -72,7 +72,7 @@ class ActiveRobot:
 
     def __init__(self, model, joints):
         """
-        Begin with a model and nothing measured.
+        Create a robot without measured state.
 
         Parameters
         ----------
@@ -99,7 +99,7 @@ class ActiveRobot:
 
     def configure(self, values, before=None):
         """
-        Bring the model in line with the parameters.
+        Apply the parameters to the model.
 
         Parameters
         ----------
@@ -118,7 +118,7 @@ class ActiveRobot:
 
     def configured(self, values, before=None):
         """
-        Return the model as `configure` would make it; the one last asked for is made once.
+        Return the model that `configure` would set; the last result is cached.
 
         Parameters
         ----------
@@ -158,7 +158,7 @@ class ActiveRobot:
 
     def motion_limits(self, velocity_limits):
         """
-        Return how far and fast the joints may move.
+        Return the motion limits of the joints.
 
         Parameters
         ----------
@@ -278,7 +278,7 @@ class ActiveRobot:
         )
 
     def stale_others(self, index, now, timeout):
-        """Return the names of the joints that `unseen_others` tells in words, a list of str."""
+        """Return the names of the joints in the text of `unseen_others`, a list of str."""
         others = np.setdiff1d(np.arange(len(self.model.joint_names)), index)
         return self.buffer.stale_joints(now, timeout, others.tolist())
 

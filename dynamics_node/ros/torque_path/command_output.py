@@ -1,4 +1,4 @@
-"""The command topic: publishes what the torque path returns, ticks it, and tells its state."""
+"""The command topic: publishes the commands of the torque path and the state of the output."""
 
 import math
 import time
@@ -16,11 +16,11 @@ from ..support.throttling import Throttle
 from ...safety import OutputSettings, OutputState, TorquePath
 from ...safety.effort_output import STOP_PERIOD
 
-# The subscriptions of the command topic are counted this often, s.
+# Period at which the subscribers of the command topic are counted, s.
 COUNT_EVERY = 0.02
 # Longest time between two ticks, s.
 IDLE_TICK = 0.25
-# The same state is logged at most this often, s; ~/state has every change.
+# Shortest time between two log lines of the same state, s; ~/state has every change.
 LOG_EVERY = 0.5
 
 
@@ -93,7 +93,7 @@ class CommandOutput:
         return self._listeners > before
 
     def publish(self, command):
-        """Send a command that the torque path has just returned, unless it is too late for it."""
+        """Publish a command of the torque path, unless it is too late for it."""
         if not self.path.is_timely(time.monotonic()):
             return
         self._message.data = to_field(command)
@@ -109,7 +109,7 @@ class CommandOutput:
         self._changed(machine.state, machine.reason)
 
     def configured(self):
-        """Look at the state sooner, because its timeout may have become shorter."""
+        """Schedule the next tick earlier, because the timeout may have become shorter."""
         if self.path.is_on:
             self._tick_within(STOP_PERIOD)
 
@@ -146,8 +146,8 @@ class CommandOutput:
         self._on_tick()
 
     def _tick_within(self, seconds):
-        # Never later than was planned: what comes again and again, like a flood of parameters,
-        # would otherwise put the tick off for ever.
+        # Never later than planned: otherwise a flood of parameters would postpone the tick for
+        # ever.
         planned = self._watchdog.time_until_next_call()
         if planned is None or planned > seconds * 1e9:
             self._tick_in(seconds)
@@ -179,7 +179,7 @@ class CommandOutput:
 
 
 def output_settings(parameters):
-    """Return the `OutputSettings` that the parameters say."""
+    """Return the `OutputSettings` of the parameters."""
     return OutputSettings(
         **{
             name: parameters[name]

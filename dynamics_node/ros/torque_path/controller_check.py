@@ -1,4 +1,4 @@
-"""The listeners of the command topic: which joints they drive, and whether they are active."""
+"""Check that subscribers of the command topic expect these efforts and are active."""
 
 from lifecycle_msgs.msg import State, TransitionEvent
 from lifecycle_msgs.srv import GetState
@@ -13,9 +13,9 @@ try:  # part of ros2_control: on a robot with controllers it is there
 except ImportError:
     ListControllers = None
 
-# How long a listener's services may take to be found and to answer, s.
+# Longest time for a subscriber's services to be discovered and to answer, s.
 ANSWER_WITHIN = 1.0
-# What rmw reports of a node that has been discovered in part.
+# Name that rmw reports for a partly discovered node.
 UNKNOWN_NAME = '_NODE_NAME_UNKNOWN_'
 EVENTS = QoSProfile(depth=10)
 PARAMETERS = ('joints', 'interface_name')
@@ -23,7 +23,7 @@ PARAMETERS = ('joints', 'interface_name')
 
 class Controllers:
     """
-    Compares the controllers on the command topic with what the node sends, again and again.
+    Checks that the controllers on the command topic expect efforts for the same joints in order.
 
     An array of efforts says nothing about its joints: a controller with another order gives
     every joint the effort of another one, and one for positions takes efforts for angles. The
@@ -62,7 +62,7 @@ class Controllers:
 
     def update(self):
         """
-        Look who listens, ask newcomers, and read what has been answered.
+        Find the subscribers, ask new ones, and read the answers.
 
         Returns
         -------
@@ -104,7 +104,7 @@ class Controllers:
         self.listeners[name].endpoints = before.endpoints
 
     def ask_again(self):
-        """Forget what the listeners have answered: their parameters may have changed."""
+        """Discard the answers: parameters of the controllers may have changed."""
         for listener in self.listeners.values():
             listener.ask_again()
 
@@ -114,7 +114,7 @@ class Controllers:
 
     def refusals(self, joint_names):
         """
-        Return what the listeners say against driving them.
+        Return why the listeners must not be driven.
 
         Parameters
         ----------
@@ -133,7 +133,7 @@ class Controllers:
         ]
 
     def notes(self):
-        """Return what could not be found out, a list of str."""
+        """Return what could not be checked, a list of str."""
         notes = [
             f'{item.name}, which listens there, did not say within {ANSWER_WITHIN:g} s which '
             'joints it drives; it is asked on, and stops the output if it does not fit'
@@ -209,7 +209,7 @@ class Listener:
             )
 
     def ask_again(self):
-        """Forget the answers, but not the lifecycle that was seen to change."""
+        """Discard the answers, but not an observed change of lifecycle."""
         self._answers = {}
         self._state_answer = self._list_answer = None
 
@@ -225,7 +225,7 @@ class Listener:
         return self._value('joints').type == ParameterType.PARAMETER_STRING_ARRAY
 
     def mismatches(self, joint_names):
-        """Return what its parameters say against driving it, a list of str."""
+        """Return why its parameters forbid driving it, a list of str."""
         reasons = []
         joints = self._value('joints')
         if joints.type == ParameterType.PARAMETER_STRING_ARRAY:
@@ -262,7 +262,7 @@ class Listener:
         ]
 
     def close(self):
-        """Ask no more."""
+        """Destroy clients and subscription."""
         self._release()
         if self._events is not None:
             self._node.destroy_subscription(self._events)
@@ -308,7 +308,7 @@ class Listener:
         return client if client.service_is_ready() else None
 
     def _lifecycle(self):
-        # What changed last counts more than what was asked earlier.
+        # An observed change is newer than an earlier answer.
         if self._state is not None:
             return _WORDS.get(self._state, f'in transition {self._state}')
         if self._state_answer is not None and self._state_answer.done():

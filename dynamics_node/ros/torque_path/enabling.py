@@ -1,4 +1,4 @@
-"""The service ~/enable: everything that has to be in order before the arm is driven."""
+"""The service ~/enable: every check before the arm is driven."""
 
 import time
 import traceback
@@ -13,9 +13,9 @@ from .controller_check import ANSWER_WITHIN
 from ..support.hints import unheard
 from ...safety import OutputState, self_compensating
 
-# How often the controllers' answers are looked for, s.
+# Period at which the answers of the controllers are read, s.
 STEP = 0.02
-# A measured effort above this part of the limit is an effort from elsewhere.
+# A measured effort above this fraction of the limit comes from another process.
 IN_FORCE = 0.05
 
 
@@ -211,7 +211,7 @@ class Enabling:
         return None
 
     async def _ask_controllers(self):
-        # One look for all requests that wait.
+        # One query for all waiting requests.
         if self._answers is None:
             self._controllers.ask_again()
             self._answers = answers = Future()
@@ -244,7 +244,7 @@ class Enabling:
         notes = self._controllers.notes() + self._notes(robot)
         topic = self._output.topic
         if not self._controllers.has_listener() and not self._output.has_listener():
-            # Before the output is on: to look through all topics takes time.
+            # Before the output is on: searching all topics takes time.
             notes.append(unheard(self._node, self._output.publisher))
         if not self._output.enable():
             return 'the node is shutting down'
@@ -286,8 +286,8 @@ class Enabling:
         return notes + self._in_force(robot, values)
 
     def _in_force(self, robot, values):
-        # What another process has left, or what holds the arm now: the first command replaces
-        # it by an effort near zero.
+        # Efforts of another process, or those that hold the arm now: the first command replaces
+        # them by efforts near zero.
         if self._path.output.limiter.last.any():
             return []  # this node's own, from which the ramp begins
         effort, limits = robot.buffer.needed_effort, robot.effort_limits(values['effort_limits'])

@@ -1,4 +1,4 @@
-"""Joint states from the bytes on the wire: the names once, the numbers every time."""
+"""Joint states from serialized bytes (CDR): names are parsed once, numbers every time."""
 
 from array import array
 import struct
@@ -22,7 +22,7 @@ class JointStateReader:
 
     rclpy makes a new message of new strings from every state. A robot's states differ in stamp
     and numbers alone, so frame and names are compared as bytes, and read by rclpy only when
-    they are new. Whatever is not as expected is left to rclpy, if it is a joint state at all.
+    they are new. Unexpected bytes are left to rclpy, if they are a joint state at all.
 
     """
 
@@ -68,7 +68,7 @@ class JointStateReader:
         return self._learn(data)
 
     def _as_before(self, data):
-        # The numbers if they are where they were in the last state; None if not.
+        # The numbers if they have the offsets of the last state; None if not.
         if len(data) < self._length:
             return None
         numbers = []
@@ -79,7 +79,7 @@ class JointStateReader:
         return numbers
 
     def _measure(self, data):
-        # The numbers, wherever they are; None if the data was cut before the efforts.
+        # The numbers at newly found offsets; None if the data ends before the efforts.
         spans, at = [], self._end
         for _ in range(3):
             place, span = _span(data, at)
@@ -126,7 +126,7 @@ _DOUBLE = 8
 
 def end_of_names(data):
     """
-    Prove that bytes are a joint state of a possible size, and return where its names end.
+    Check that bytes are a joint state of a possible size, and return the end of its names.
 
     A million names would keep rclpy, and so the arm, waiting for a second; and for many a wrong
     message it prints a line of its own, however many come.

@@ -1,4 +1,4 @@
-"""The joint states: from the topic into the buffer."""
+"""Subscription to the joint states: every message goes through the torque path at once."""
 
 import time
 
@@ -18,9 +18,9 @@ from ..support.qos import (
 from ..support.throttling import Throttle
 from ...safety import RejectedStateError
 
-# The shortest time between two warnings about the same thing, s.
+# Shortest time between two warnings of the same kind, s.
 WARN_EVERY = 1.0
-# An arm may rest at its stop, a little beyond its limit, for hours.
+# Shortest time between two warnings about position limits, s: an arm may rest there for hours.
 WARN_OF_LIMITS_EVERY = 30.0
 
 
@@ -67,10 +67,10 @@ class JointStateInput:
         self._warnings: dict[str, Throttle] = {}
         self.publishers = self.skipped = 0
         self._callback, self._raw = self._bytes_received if raw else self._received, raw
-        # Changed in place by the overrides.
+        # rclpy's overrides change it in place.
         self._profile = joint_states(context.parameters['allow_several_state_publishers'])
         self.subscription = self._subscribe(qos_overriding_options=JOINT_STATES_OVERRIDES)
-        # Not where the parameters say how deep it is to be.
+        # Not if parameters set the depth.
         self._adapts = (
             self._profile.depth == SINGLE_DEPTH
             and self._profile.history == QoSHistoryPolicy.KEEP_LAST
@@ -124,7 +124,7 @@ class JointStateInput:
         try:
             message = self._reader.read(data)
         except Exception as error:
-            # Whatever rclpy finds wrong with a message, it is a message that cannot be used.
+            # Any error of rclpy means an unusable message.
             if not isinstance(error, RejectedStateError):
                 error = RejectedStateError('unreadable', str(error))
             self._path.buffer.rejected[error.kind] += 1
@@ -190,7 +190,7 @@ class JointStateInput:
         return self._clock.now().to_msg()
 
     def _count_skipped(self, info):
-        # Each publisher counts for itself, and which one it was rclpy does not say.
+        # Each publisher has its own count, and rclpy does not tell which one it was.
         number = info['publication_sequence_number']
         if number is not None and self._sequence_number and self.publishers == 1:
             self.skipped += max(number - self._sequence_number - 1, 0)

@@ -4,7 +4,7 @@ import time
 
 from ..support.callback_errors import logged
 
-# How often the controllers' lifecycle is followed while the output is off, s.
+# Period of the lifecycle checks while the output is off, s.
 IDLE_EVERY = 1.0
 
 
@@ -64,7 +64,7 @@ class Protection:
         if has_listener and not self._had_listener:
             new = sorted(self._controllers.listeners) or ['a listener']
         if self._path.is_driving and new:
-            # It has missed the start ramp and would get the whole effort at once.
+            # It has missed the start ramp and would get the full effort at once.
             self._path.restart_from_zero(
                 time.monotonic(), f'{", ".join(new)} has begun to listen to the commands'
             )
@@ -87,7 +87,7 @@ class Protection:
             self._path.fault(now, '; '.join(mismatches))
 
     def _lose(self, now, reason):
-        # Another controller gets the whole stop: it would keep the last effort.
+        # Another controller must get the complete stop: it would keep the last effort.
         if not self._controllers.takes_commands():
             self._path.lose_controller(now, reason)
         elif self._path.is_driving:

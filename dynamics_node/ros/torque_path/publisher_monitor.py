@@ -5,7 +5,7 @@ class PublisherMonitor:
     """
     Looks for a second source of efforts, joint states or robot descriptions.
 
-    Two sources make an arm jump between what they say.
+    Two sources make an arm jump between their values.
 
     """
 
