@@ -6,8 +6,8 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # The others test the library, which is the same on every release.
-ros_tests=(test/ros test/tools test/demo test/visualization test/safety/test_state_machine.py
-    test/test_{benchmarks,commands_in_documents,launch,mass_matrix_document,reference_document}.py
+ros_tests=(test/ros test/tools test/benchmarks/test_node_latency.py test/demo test/visualization test/safety/test_state_machine.py
+    test/test_{commands_in_documents,launch,mass_matrix_document,reference_document}.py
     test/test_{robot_configs,safety_document,trajectory_document}.py)
 
 arguments=()
