@@ -33,22 +33,20 @@ uv() {
     "$uv_program" --no-config "$@" 9<&-
 }
 
-# False after a move, a change of ROS 2, an interpreter's removal, and if the user asks for another.
+# False after a move, a change of ROS 2, an interrupted installation, an interpreter's removal, and if
+# the user asks for another one.
 venv_is_usable() {
-    [[ -f $venv/.made-for && $(<"$venv/.made-for") == "$mode $dynamics_root ${PYTHON:-}" ]] &&
+    [[ ! -e $venv/.installing && -f $venv/.made-for && $(<"$venv/.made-for") == "$mode $dynamics_root ${PYTHON:-}" ]] &&
         "$venv/bin/python" -c '' 2>/dev/null
 }
 
-# Prints an interpreter that uv finds on this machine; one that it fetches, if there is none.
+# Prints the first fitting interpreter of this machine, also one of pyenv that is not switched on;
+# if there is none, one that uv fetches.
 choose_python() {
     local version found
     for version in "${python_versions[@]}"; do
-        found=$(uv python find --no-project --system --no-python-downloads "$version" 2>/dev/null) &&
-            has_headers "$found" && echo "$found" && return
-    done
-    # Those of pyenv that are not switched on.
-    for version in "${python_versions[@]}"; do
-        for found in "${PYENV_ROOT:-${HOME:-}/.pyenv}/versions/$version".*/bin/python3; do
+        for found in "$(uv python find --no-project --system --no-python-downloads "$version" 2>/dev/null)" \
+            "${PYENV_ROOT:-${HOME:-}/.pyenv}/versions/$version".*/bin/python3; do
             [[ -x $found ]] && has_headers "$found" && echo "$found" && return
         done
     done
