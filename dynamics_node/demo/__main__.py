@@ -20,11 +20,10 @@ from rich.console import Console
 
 from .client import Client
 from .console_output import print_logs, print_mass_matrix, print_outcome
-from .files import arm7_path, read_robot
 from .missing_values import filled_in_limits, joints_without_limit
 from .mujoco_arm import MujocoArm
 from .plot import draw
-from .processes import DemoError, Processes
+from .processes import arm7_path, DemoError, Processes, read_robot
 from .recording import Recording
 from .robot_text import robot_name, RobotRefusedError
 from .story import Outcome, Story

@@ -1,4 +1,4 @@
-"""The child processes of the demo: each has a log, and none outlives the demo."""
+"""The child processes of the demo, each with a log, and the URDF files that it starts with."""
 
 import os
 from pathlib import Path
@@ -7,6 +7,10 @@ import subprocess
 import sys
 import tempfile
 from types import TracebackType
+
+from ament_index_python.packages import get_package_share_directory, PackageNotFoundError
+
+from .robot_text import RobotRefusedError
 
 END_TIMEOUT = 5.0  # [s] after SIGINT; the node takes up to 3 s to ramp down
 TAIL = 15  # lines of each log printed after a failure
@@ -86,3 +90,25 @@ class Processes:
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
+
+
+ARM7 = Path('config') / 'robots' / 'arm7.urdf'
+
+
+def arm7_path() -> Path:
+    """Return the path of arm7.urdf."""
+    try:
+        installed = Path(get_package_share_directory('dynamics_node')) / ARM7
+    except PackageNotFoundError:
+        installed = None
+    if installed is not None and installed.is_file():
+        return installed
+    return Path(__file__).resolve().parents[2] / ARM7
+
+
+def read_robot(path: Path) -> str:
+    """Return the text of a URDF file."""
+    try:
+        return path.read_text(encoding='utf-8')
+    except (OSError, UnicodeDecodeError) as error:
+        raise RobotRefusedError(f'cannot read the robot description {path}: {error}') from error

@@ -26,12 +26,11 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import SetBool, Trigger
 
-from .files import arm7_path, read_robot
 from .missing_values import add_missing_damping
 from .mujoco_arm import MujocoArm, UnstableError
 from .mujoco_model import TIME_STEP
-from .poses import start_pose
-from .push import plan_push
+from .poses import plan_push, start_pose
+from .processes import arm7_path, read_robot
 from .robot_text import robot_name, RobotRefusedError
 from .timing import ClockOffset, Pacer
 from .viewer import add_scenery, check_display, open_viewer

@@ -7,8 +7,14 @@ from dynamics_node.demo.missing_values import (
 )
 from dynamics_node.demo.mujoco_arm import MujocoArm
 from dynamics_node.demo.mujoco_model import TIME_STEP
-from dynamics_node.demo.poses import choose_pose, gravity_peak, random_poses, start_pose
-from dynamics_node.demo.push import plan_push, WANTED
+from dynamics_node.demo.poses import (
+    choose_pose,
+    gravity_peak,
+    plan_push,
+    random_poses,
+    start_pose,
+    WANTED,
+)
 from dynamics_node.demo.robot_text import RobotRefusedError
 import numpy as np
 import pytest

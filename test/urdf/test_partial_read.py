@@ -20,7 +20,7 @@ def test_a_correct_robot_is_read_whole():
     [
         (arm().replace('mass value="2.5"', 'mass value="x"'), 7, 6, {'link2'}),
         (arm().replace('revolute', 'spherical', 1), 7, 5, set()),
-        (arm().replace('<child link="link5"/>', '<child link="nobody"/>'), 7, 5, set()),
+        (arm().replace('<child link="link5"/>', '<child link="missing"/>'), 7, 5, set()),
         (arm().replace('<link name="link5">', '<link name="link4">'), 6, 4, set()),
         (arm().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0"/>'), 7, 5, set()),
     ],

@@ -159,7 +159,9 @@ def unheard(node, publisher):
     listened = listened_elsewhere(node, publisher)
     if listened:
         return (
-            'nothing listens there, but somebody does on ' + ', '.join(listened) + ': if that '
+            'nothing listens there, but there are subscribers on '
+            + ', '.join(listened)
+            + ': if that '
             'is an effort controller, start the node with  --ros-args -p '
             f'command_topic:={listened[0]}'
         )
