@@ -153,6 +153,21 @@ def test_a_python_of_pyenv_that_is_switched_off_is_found(tools, checkout, tmp_pa
     assert result.stdout == f'{folder}/python3\n', result.stderr
 
 
+def test_the_python_of_jazzy_comes_first(tools, checkout, tmp_path):
+    other = tmp_path / 'python3.11'
+    write_program(other, '#!/bin/sh\nexit 0\n')
+    write_program(
+        tools / 'uv', f'#!/bin/sh\n[ "${{7:-}}" = 3.11 ] && echo {other} && exit\nexit 1\n'
+    )
+    found = run_bash('find_uv; choose_python', checkout, PATH=str(tools), HOME=str(tmp_path))
+    assert found.stdout == f'{other}\n', found.stderr
+    folder = tmp_path / '.pyenv' / 'versions' / '3.12.99' / 'bin'
+    folder.mkdir(parents=True)
+    write_program(folder / 'python3', '#!/bin/sh\nexit 0\n')
+    found = run_bash('find_uv; choose_python', checkout, PATH=str(tools), HOME=str(tmp_path))
+    assert found.stdout == f'{folder}/python3\n', found.stderr
+
+
 def test_a_python_without_headers_is_refused_with_the_package_to_install(tools, checkout):
     write_program(tools / 'uv')
     result = run_bash(
@@ -172,6 +187,9 @@ def test_an_environment_of_another_place_release_or_python_is_made_anew(checkout
         assert run_bash(code, checkout).stdout == answer + '\n'
     made.write_text(f'wheels {checkout} \n')
     assert run_bash(code, checkout, PYTHON='/other/python').stdout == 'not\n'
+    # A killed uv leaves this file.
+    (checkout / '.venv' / '.installing').touch()
+    assert run_bash(code, checkout).stdout == 'not\n'
 
 
 # Where ROS 2 comes from -----------------------------------------------------------------------
@@ -324,3 +342,6 @@ def test_pip_installs_the_library_without_ros(version, source, tmp_path):
     assert not {'demo', 'report', 'dynamics_node', 'markers'} & names
     (line,) = run(python.parent / 'dynamics-node', code=1).stderr.splitlines()
     assert "no module 'rclpy'" in line and 'source /opt/ros' in line
+    robot = ROOT / 'config' / 'robots' / 'pendulum.urdf'
+    (line,) = run(python.parent / 'dynamics-report', robot, code=2).stderr.splitlines()
+    assert 'pip install' in line and 'rich' in line
