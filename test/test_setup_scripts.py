@@ -119,6 +119,7 @@ def test_one_version_is_stated_everywhere():
             f'<version>{dynamics_node.__version__}</version>'
             in (package / 'package.xml').read_text()
         )
+    assert f'\nversion: {dynamics_node.__version__}\n' in (ROOT / 'CITATION.cff').read_text()
 
 
 # Python and uv --------------------------------------------------------------------------------
@@ -332,7 +333,9 @@ def test_pip_installs_the_library_without_ros(version, source, tmp_path):
     answer = run(
         python,
         '-c',
-        'from dynamics_node import RobotModel\n'
+        'from importlib.metadata import version\n'
+        'from dynamics_node import __version__, RobotModel\n'
+        'assert version("dynamics_node") == __version__\n'
         f'robot = RobotModel.from_urdf({str(ROOT / "config" / "robots" / "pendulum.urdf")!r})\n'
         'print(robot.gravity_torque([0.0]))',
     )
