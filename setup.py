@@ -1,6 +1,7 @@
 """Install the package where ament, colcon and `ros2 run` look for it; see also pyproject.toml."""
 
 from pathlib import Path
+import re
 import sys
 
 from setuptools import find_packages, setup
@@ -18,12 +19,20 @@ def command(program):
     return f'{program if is_for_ros else "dynamics-" + name} = dynamics_node.programs:{program}'
 
 
+def version():
+    """Return the version of the package, without importing it."""
+    return re.search(r"__version__ = '(.+)'", Path(package_name, '__init__.py').read_text())[1]
+
+
 def files(folder, pattern):
     """Return the files of a folder as setuptools wants them: relative paths as text."""
     return sorted(str(path) for path in Path(folder).glob(pattern))
 
 
 distribution = setup(
+    # Here too, because `colcon build --symlink-install` does not see pyproject.toml.
+    name=package_name,
+    version=version(),
     packages=find_packages(include=[package_name, f'{package_name}.*']),
     # The page of the model report is made of these: styles, scripts, templates.
     package_data={

@@ -61,10 +61,17 @@ install_packages() {
     [[ $mode != wheels ]] || groups+=(--group "ros-$ros_release")
     [[ $purpose == demo ]] || groups+=(--group test)
     [[ $mode == wheels ]] || ! has_numpy_1 || groups+=(--group sourced-ros)
+    [[ -t 2 ]] || groups+=(--quiet)
+    # A killed uv may leave half a package, which it takes for a whole one the next time.
+    touch "$venv/.installing"
     # Packages of another purpose stay.
-    uv sync --locked --inexact --no-install-project --quiet "${groups[@]}" "${extras[@]}" ||
-        die "packages cannot be had from PyPI (the lines above are uv's): check the network, the" \
-            "proxy and the index (UV_DEFAULT_INDEX), then run the same command again."
+    if uv sync --locked --inexact --no-install-project "${groups[@]}" "${extras[@]}"; then
+        rm "$venv/.installing"
+        return
+    fi
+    [[ $(find "$venv/lib" -newer "$venv/.installing" -print -quit) ]] || rm "$venv/.installing"
+    die "packages cannot be had from PyPI (the lines above are uv's): check the network, the" \
+        "proxy and the index (UV_DEFAULT_INDEX), then run the same command again."
 }
 
 build() {

@@ -119,6 +119,7 @@ def test_one_version_is_stated_everywhere():
             f'<version>{dynamics_node.__version__}</version>'
             in (package / 'package.xml').read_text()
         )
+    assert f'\nversion: {dynamics_node.__version__}\n' in (ROOT / 'CITATION.cff').read_text()
 
 
 # Python and uv --------------------------------------------------------------------------------
@@ -153,6 +154,21 @@ def test_a_python_of_pyenv_that_is_switched_off_is_found(tools, checkout, tmp_pa
     assert result.stdout == f'{folder}/python3\n', result.stderr
 
 
+def test_the_python_of_jazzy_comes_first(tools, checkout, tmp_path):
+    other = tmp_path / 'python3.11'
+    write_program(other, '#!/bin/sh\nexit 0\n')
+    write_program(
+        tools / 'uv', f'#!/bin/sh\n[ "${{7:-}}" = 3.11 ] && echo {other} && exit\nexit 1\n'
+    )
+    found = run_bash('find_uv; choose_python', checkout, PATH=str(tools), HOME=str(tmp_path))
+    assert found.stdout == f'{other}\n', found.stderr
+    folder = tmp_path / '.pyenv' / 'versions' / '3.12.99' / 'bin'
+    folder.mkdir(parents=True)
+    write_program(folder / 'python3', '#!/bin/sh\nexit 0\n')
+    found = run_bash('find_uv; choose_python', checkout, PATH=str(tools), HOME=str(tmp_path))
+    assert found.stdout == f'{folder}/python3\n', found.stderr
+
+
 def test_a_python_without_headers_is_refused_with_the_package_to_install(tools, checkout):
     write_program(tools / 'uv')
     result = run_bash(
@@ -172,6 +188,9 @@ def test_an_environment_of_another_place_release_or_python_is_made_anew(checkout
         assert run_bash(code, checkout).stdout == answer + '\n'
     made.write_text(f'wheels {checkout} \n')
     assert run_bash(code, checkout, PYTHON='/other/python').stdout == 'not\n'
+    # A killed uv leaves this file.
+    (checkout / '.venv' / '.installing').touch()
+    assert run_bash(code, checkout).stdout == 'not\n'
 
 
 # Where ROS 2 comes from -----------------------------------------------------------------------
@@ -303,17 +322,20 @@ def test_pip_installs_the_library_without_ros(version, source, tmp_path):
         assert done.returncode == code, done.stdout + done.stderr
         return done
 
-    # uv keeps what other environments need too; pip itself is tried once.
+    # uv is faster, and keeps what the next environment needs too; pip itself is tried once.
     uv = shutil.which('uv') or ROOT / 'log' / 'uv' / 'bin' / 'uv'
-    run(interpreter(version), '-m', 'venv', tmp_path / 'env')
     if version == '3.12' or not Path(uv).exists():
+        run(interpreter(version), '-m', 'venv', tmp_path / 'env')
         run(python, '-m', 'pip', 'install', '--quiet', source)
     else:
+        run(uv, 'venv', '--quiet', '--python', interpreter(version), tmp_path / 'env')
         run(uv, 'pip', 'install', '--quiet', '--python', python, source)
     answer = run(
         python,
         '-c',
-        'from dynamics_node import RobotModel\n'
+        'from importlib.metadata import version\n'
+        'from dynamics_node import __version__, RobotModel\n'
+        'assert version("dynamics_node") == __version__\n'
         f'robot = RobotModel.from_urdf({str(ROOT / "config" / "robots" / "pendulum.urdf")!r})\n'
         'print(robot.gravity_torque([0.0]))',
     )
@@ -324,3 +346,6 @@ def test_pip_installs_the_library_without_ros(version, source, tmp_path):
     assert not {'demo', 'report', 'dynamics_node', 'markers'} & names
     (line,) = run(python.parent / 'dynamics-node', code=1).stderr.splitlines()
     assert "no module 'rclpy'" in line and 'source /opt/ros' in line
+    robot = ROOT / 'config' / 'robots' / 'pendulum.urdf'
+    (line,) = run(python.parent / 'dynamics-report', robot, code=2).stderr.splitlines()
+    assert 'pip install' in line and 'rich' in line

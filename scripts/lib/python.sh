@@ -33,9 +33,11 @@ uv() {
     "$uv_program" --no-config "$@" 9<&-
 }
 
-# False after a move, a change of ROS 2, an interpreter's removal, and if the user asks for another.
+# False after a move, a change of ROS 2, an interrupted installation, an interpreter's removal, and if
+# the user asks for another one.
 venv_is_usable() {
-    [[ -f $venv/.made-for && $(<"$venv/.made-for") == "$mode $dynamics_root ${PYTHON:-}" ]] &&
+    [[ ! -e $venv/.installing && -f $venv/.made-for ]] &&
+        [[ $(<"$venv/.made-for") == "$mode $dynamics_root ${PYTHON:-}" ]] &&
         "$venv/bin/python" -c '' 2>/dev/null
 }
 

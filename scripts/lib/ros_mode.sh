@@ -7,12 +7,7 @@ wheel_releases=(jazzy kilted)
 
 # is_one_of WORD WORDS...
 is_one_of() {
-    local word=$1 other
-    shift
-    for other; do
-        [[ $word != "$other" ]] || return 0
-    done
-    return 1
+    [[ " ${*:2} " == *" $1 "* ]]
 }
 
 # Prints where ROS 2 comes from: `wheels` (from PyPI) or `sourced PREFIX`.

