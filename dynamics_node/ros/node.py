@@ -9,7 +9,7 @@ from rclpy.node import Node
 from .context import NodeContext
 from .parameters.live_change_check import check_change
 from .parameters.parameters import Parameters
-from .parameters.table import check_lengths, ParameterError
+from .parameters.table import check_lengths
 from .publishers.diagnostics import Diagnostics
 from .publishers.external_torque import ExternalTorque
 from .publishers.result_publishers import ResultPublishers
@@ -117,7 +117,7 @@ class DynamicsNode(Node):
             robot = read_robot(source, self.parameters.values)
             check_lengths(self.parameters.values, robot.joint_names)
             robot.configure(self.parameters.values)
-        except (DynamicsError, ParameterError) as error:
+        except DynamicsError as error:
             if origin.startswith('parameter'):
                 raise
             kept = 'still waiting for one'

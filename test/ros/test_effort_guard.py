@@ -8,8 +8,8 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.msg import OutputState
+from dynamics_node.errors import ParameterError
 from dynamics_node.ros.effort_guard.parameters import check_all
-from dynamics_node.ros.parameters.declaration import ParameterError
 from dynamics_node.ros.support.process import SAME_SIGNAL
 from dynamics_node.safety.effort_guard import LONGEST_STEP
 import numpy as np

@@ -1,9 +1,10 @@
 """Accepted and refused changes of parameters while the output is on."""
 
 from dynamics_node import RobotModel
+from dynamics_node.errors import ParameterError
 from dynamics_node.ros.parameters.live_change_check import check_change
 from dynamics_node.ros.parameters.model_settings import configured
-from dynamics_node.ros.parameters.table import check_all, ParameterError
+from dynamics_node.ros.parameters.table import check_all
 from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.safety import GravityChange
 import numpy as np

@@ -3,8 +3,9 @@
 from pathlib import Path
 import re
 
+from dynamics_node.errors import ParameterError
 from dynamics_node.ros.parameters.parameters import Parameters
-from dynamics_node.ros.parameters.table import check_all, check_lengths, ParameterError, PARAMETERS
+from dynamics_node.ros.parameters.table import check_all, check_lengths, PARAMETERS
 import pytest
 from rclpy.parameter import Parameter as RosParameter
 from support.processes import Client

@@ -15,10 +15,11 @@ from std_srvs.srv import Trigger
 
 from .controller_parameters import ControllerParameters
 from .parameters import check_all, GUARD_PARAMETERS
-from ..parameters.declaration import declare, ParameterError
+from ..parameters.declaration import declare
 from ..support.callback_errors import logged
 from ..support.qos import COMMAND, NO_EVENTS, OUTPUT_STATE, RESULT
 from ..support.throttling import Throttle
+from ...errors import ParameterError
 from ...safety.effort_guard import EffortGuard, GuardSettings, MAX_TICK, PERIODS
 
 # Period of the checks of publishers and subscribers, s.

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ..parameters.declaration import check_each, DOUBLE, DOUBLES, Parameter, ParameterError, TEXT
+from ..parameters.declaration import check_each, DOUBLE, DOUBLES, Parameter, TEXT
+from ...errors import ParameterError
 from ...safety.effort_guard import GuardSettings
 
 GUARD_PARAMETERS = (

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from .table import ParameterError
 from ...dynamics import RobotModel
+from ...errors import ParameterError
 from ...safety import GravityChange
 
 

@@ -8,9 +8,10 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 
 from .declaration import declare, ros_parameter
-from .table import check_all, ParameterError, PARAMETERS
+from .table import check_all, PARAMETERS
 from ..support.callback_errors import logged
 from ..support.throttling import Throttle
+from ...errors import ParameterError
 
 
 class Parameters:

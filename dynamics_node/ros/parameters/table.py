@@ -10,8 +10,9 @@ from collections.abc import Mapping, Sequence
 import math
 from typing import Any
 
-from .declaration import check_each, DOUBLE, DOUBLES, FLAG, Parameter, ParameterError, TEXT, TEXTS
+from .declaration import check_each, DOUBLE, DOUBLES, FLAG, Parameter, TEXT, TEXTS
 from ...dynamics.friction import SMOOTHING_VELOCITY
+from ...errors import ParameterError
 from ...safety.effort_output import STOP_BEHAVIORS
 
 # Largest gravity acceleration, m/s².

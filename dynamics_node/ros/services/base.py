@@ -10,7 +10,6 @@ import numpy as np
 
 from .query import Query
 from ..context import NodeContext
-from ..parameters.table import ParameterError
 from ..support.callback_errors import guarded_service
 from ..torque_path.active_robot import ActiveRobot
 from ...errors import DynamicsError
@@ -86,7 +85,7 @@ def service(kind: type) -> Callable:
     Declare a method of `RobotServices` as the service `~/<its name>`.
 
     The method takes request and response, fills the response and returns its message.
-    DynamicsError and ParameterError become the refusal. Its docstring is "Answer ...".
+    A DynamicsError, also a ParameterError, becomes the refusal. Its docstring is "Answer ...".
 
     Parameters
     ----------
@@ -101,7 +100,7 @@ def service(kind: type) -> Callable:
         def answer(self: RobotServices, request: Any, response: Any) -> Any:
             try:
                 response.message = method(self, request, response)
-            except (DynamicsError, ParameterError) as error:
+            except DynamicsError as error:
                 return self.failed(kind.Response(), str(error))  # type: ignore[attr-defined]
             response.success = True
             return self.completed(response)

@@ -7,9 +7,8 @@ from dynamics_interfaces.srv import SetGravity, SetPayload
 import numpy as np
 
 from .base import RobotServices, service
-from ..parameters.table import ParameterError
 from ...dynamics.arguments import check_link
-from ...errors import ArgumentError
+from ...errors import ArgumentError, ParameterError
 
 _TENSOR = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
 # Parameter names in a refusal → the fields of the request.
