@@ -5,7 +5,13 @@ from types import SimpleNamespace
 from dynamics_node import RobotModel
 from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.support.description_source import DescriptionSource
-from dynamics_node.ros.support.hints import Hints, mismatches, PATIENCE, REPEAT_EVERY, unheard
+from dynamics_node.ros.support.hints import (
+    Hints,
+    incompatible_publishers,
+    no_subscriber_hint,
+    PATIENCE,
+    REPEAT_EVERY,
+)
 from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.safety import RejectedStateError
 import numpy as np
@@ -118,7 +124,7 @@ def test_a_description_in_another_namespace_is_found(waiting, other, capfd):
         )
     )
     text = waiting.after(PATIENCE, capfd)
-    assert 'But /left/robot_description has it' in text
+    assert 'But /left/robot_description has a publisher' in text
     assert '--ros-args -r __ns:=/left' in text
     assert '/right' not in text and '/up' not in text and 'semantic' not in text
 
@@ -177,7 +183,7 @@ def test_joint_states_that_have_ended_are_said_to_have_ended(waiting, capfd):
         waiting.feed(ARM.joint_names, [np.nan] * 8)
     text = waiting.after(PATIENCE + 1.0, capfd)
     assert 'No node publishes there any more.' in text and BROADCASTER in text
-    assert 'There come' not in text and 'dropped' not in text
+    assert 'Received:' not in text and 'dropped' not in text
 
 
 def test_joint_states_that_have_ended_while_their_publisher_is_known(waiting, published, capfd):
@@ -187,8 +193,8 @@ def test_joint_states_that_have_ended_while_their_publisher_is_known(waiting, pu
         assert waiting.after(1.0, capfd) == ''
     while not (text := waiting.after(1.0, capfd)):
         assert waiting.time < 20.0
-    assert f"Nothing comes any more; '{ARM.joint_names[0]}', " in text
-    assert 'ros2 control list_controllers' in text and 'There come' not in text
+    assert f"No message arrives any more; the last one had '{ARM.joint_names[0]}', " in text
+    assert 'ros2 control list_controllers' in text and 'Received:' not in text
 
 
 def test_in_a_namespace_the_broadcaster_has_another_controller_manager(other, capfd):
@@ -241,11 +247,11 @@ def test_a_prefix_before_every_name_is_recognized(waiting, published, capfd):
     waiting.describe()
     waiting.feed([f'left_{name}' for name in ARM.joint_names])
     text = waiting.after(PATIENCE, capfd)
-    assert "named with 'left_' before" in text
-    assert 'prefix' in text
+    assert "They have the prefix 'left_'" in text
+    assert 'tf_prefix' in text
     waiting.feed([*(f'left_{name}' for name in ARM.joint_names[:-1]), 'x' * 300, 'a\x1b[31m'])
     text = waiting.after(REPEAT_EVERY, capfd)
-    assert 'The description must name its joints as they are named there' in text
+    assert 'The joints in the description must have the names in the joint states' in text
     assert '\x1b[31m' not in text and len(text) < 1500
 
 
@@ -265,14 +271,14 @@ def test_dropped_states_are_not_taken_for_missing_names(waiting, published, capf
 def test_nobody_listens_to_the_commands(waiting, other):
     node = waiting.client.node
     publisher = node.create_publisher(Float64MultiArray, 'forward_effort_controller/commands', 1)
-    text = unheard(node, publisher)
+    text = no_subscriber_hint(node, publisher)
     assert 'ros2 control list_controllers' in text
     assert 'ros2 control load_controller --set-state active forward_effort_controller' in text
     in_namespace = node.create_publisher(Float64MultiArray, '/left/effort/commands', 1)
     assert (
         'load_controller --controller-manager /left/controller_manager --set-state active effort'
-    ) in unheard(node, in_namespace)
-    assert 'active forward_effort_controller' in unheard(
+    ) in no_subscriber_hint(node, in_namespace)
+    assert 'active forward_effort_controller' in no_subscriber_hint(
         node, node.create_publisher(Float64MultiArray, '/efforts', 1)
     )
     # Takes radians.
@@ -280,12 +286,12 @@ def test_nobody_listens_to_the_commands(waiting, other):
         Float64MultiArray, '/forward_position_controller/commands', lambda _: None, 1
     )
     waiting.client.until(lambda: node.count_subscribers('/forward_position_controller/commands'))
-    assert 'forward_position_controller' not in unheard(node, publisher)
+    assert 'forward_position_controller' not in no_subscriber_hint(node, publisher)
     other.node.create_subscription(
         Float64MultiArray, '/arm_controller/commands', lambda _: None, 1
     )
     waiting.client.until(lambda: node.count_subscribers('/arm_controller/commands'))
-    assert '-p command_topic:=/arm_controller/commands' in unheard(node, publisher)
+    assert '-p command_topic:=/arm_controller/commands' in no_subscriber_hint(node, publisher)
 
 
 def test_the_node_says_it_by_itself(client, start):
@@ -298,7 +304,8 @@ def test_the_node_says_it_by_itself(client, start):
     client.until(lambda: heard('no robot description on /robot_description for 5 s'))
     start('__node:=with_other_names', robot_description_file=PENDULUM)
     client.until(
-        lambda: heard("named with 'left_' before"), lambda: client.publish(['left_hinge'], [0.0])
+        lambda: heard("They have the prefix 'left_'"),
+        lambda: client.publish(['left_hinge'], [0.0]),
     )
     assert {message.name for message in heard(' for 5 s')} == {
         'without_description',
@@ -330,7 +337,7 @@ def found(client, stranger, kind, qos):
             if info.node_name == 'test_client'
         ]
     )
-    return mismatches(client.node, subscription)
+    return incompatible_publishers(client.node, subscription)
 
 
 def test_what_fits_is_not_mentioned(client, stranger):

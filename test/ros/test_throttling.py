@@ -2,7 +2,12 @@
 
 import time
 
-from dynamics_node.ros.support.throttling import ASK_EVERY, HasSubscribers, Rate, Throttle
+from dynamics_node.ros.support.throttling import (
+    HasSubscribers,
+    Rate,
+    SUBSCRIBER_COUNT_AGE,
+    Throttle,
+)
 from std_msgs.msg import String
 
 
@@ -12,11 +17,11 @@ def test_a_listener_is_noticed_soon_after_it_was_matched_and_soon_after_it_left(
     assert not listened
     subscription = client.node.create_subscription(String, 'listened', lambda _: None, 1)
     client.until(publisher.get_subscription_count)
-    time.sleep(ASK_EVERY)
+    time.sleep(SUBSCRIBER_COUNT_AGE)
     assert listened
     client.node.destroy_subscription(subscription)
     client.until(lambda: not publisher.get_subscription_count())
-    time.sleep(ASK_EVERY)
+    time.sleep(SUBSCRIBER_COUNT_AGE)
     assert not listened
 
 

@@ -2,7 +2,7 @@
 
 from dynamics_node import DynamicsError, RobotDescriptionError, RobotModel
 from dynamics_node.ros.parameters.table import check_all
-from dynamics_node.ros.torque_path.active_robot import Robot
+from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 import numpy as np
 
 from .audit import nothing_opened
@@ -77,7 +77,7 @@ def _gravity_torque(robot):
 
 
 def _use(model):
-    robot = Robot(model, ())
+    robot = ActiveRobot(model, ())
     q = robot.buffer.position
     assert np.isfinite(q).all(), f'neutral position {q}'
     try:

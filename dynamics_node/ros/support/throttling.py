@@ -1,26 +1,35 @@
-"""A warning at most once a second, at no cost in between."""
+"""Rate limiting: of log messages, of graph queries, and the measured rate of a counter."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rclpy.publisher import Publisher
+
+# Longest age of a cached subscriber count, s: far below the duration of discovery.
+SUBSCRIBER_COUNT_AGE = 0.05
 
 
 class Throttle:
     """
-    Says when a message that keeps coming is due again.
+    Limits how often something is done, usually a log message.
 
-    rclpy's own `throttle_duration_sec` looks through the source files for its caller at every
-    call, logged or not: near a millisecond, in a callback that may come a thousand times a
-    second.
+    rclpy's own `throttle_duration_sec` searches the source files for its caller at every call,
+    logged or not. That takes nearly a millisecond, in a callback that may run at 1 kHz.
 
     """
 
-    def __init__(self, period, clock=time.monotonic):
+    def __init__(self, period: float, clock: Callable[[], float] = time.monotonic) -> None:
         """
         Start due.
 
         Parameters
         ----------
         period : float
-            Shortest time between two messages, s.
+            Shortest time between two actions, s.
         clock : callable() -> float
             Steady, s.
 
@@ -29,8 +38,8 @@ class Throttle:
         self._clock = clock
         self._next = float('-inf')
 
-    def is_due(self):
-        """Tell whether the message may be logged now; if so, the period begins again."""
+    def is_due(self) -> bool:
+        """Return whether the action is due now; if so, the period begins again."""
         now = self._clock()
         if now < self._next:
             return False
@@ -40,7 +49,7 @@ class Throttle:
 
 class Rate:
     """
-    How often something happens, from a counter that is read now and then.
+    Rate of events, from two readings of a counter.
 
     Attributes
     ----------
@@ -49,12 +58,11 @@ class Rate:
 
     """
 
-    def __init__(self):
-        """Begin at zero."""
+    def __init__(self) -> None:
         self.value = 0.0
-        self._last = (0.0, 0)
+        self._last: tuple[float, int] = (0.0, 0)
 
-    def measure(self, now, count):
+    def measure(self, now: float, count: int) -> None:
         """
         Take a reading.
 
@@ -63,7 +71,7 @@ class Rate:
         now : float
             s.
         count : int
-            A smaller one than before begins anew.
+            Events so far; a smaller number than before means that the counter was reset.
 
         """
         before, earlier = self._last
@@ -71,35 +79,30 @@ class Rate:
         self._last = (now, count)
 
 
-# The longest that a new listener waits for its first message, s: far below what finding each
-# other takes.
-ASK_EVERY = 0.05
-
-
 class HasSubscribers:
     """
-    Knows whether a publisher has listeners.
+    Truth value: whether a publisher has subscribers.
 
-    The middleware takes longer to answer that than a state takes to become a torque.
+    Querying the subscriber count costs more than computing a torque, so it is cached.
 
     """
 
-    def __init__(self, publisher, period=ASK_EVERY):
+    def __init__(self, publisher: Publisher, period: float = SUBSCRIBER_COUNT_AGE) -> None:
         """
-        Know nothing yet.
+        Start without a count; the first use queries it.
 
         Parameters
         ----------
         publisher : rclpy.publisher.Publisher
         period : float
-            Longest time for which an answer is taken to hold, s.
+            Longest age of the cached count, s.
 
         """
         self._publisher = publisher
         self._due = Throttle(period)
-        self._has_listeners = False
+        self._has_subscribers = False
 
-    def __bool__(self):
+    def __bool__(self) -> bool:
         if self._due.is_due():
-            self._has_listeners = self._publisher.get_subscription_count() > 0
-        return self._has_listeners
+            self._has_subscribers = self._publisher.get_subscription_count() > 0
+        return self._has_subscribers

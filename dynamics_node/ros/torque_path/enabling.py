@@ -10,7 +10,7 @@ from rclpy.task import Future
 from std_srvs.srv import SetBool
 
 from .controller_check import ANSWER_WITHIN
-from ..support.hints import unheard
+from ..support.hints import no_subscriber_hint
 from ...safety import OutputState, self_compensating
 
 # How often the controllers' answers are looked for, s.
@@ -245,7 +245,7 @@ class Enabling:
         topic = self._output.topic
         if not self._controllers.has_listener() and not self._output.has_listener():
             # Before the output is on: to look through all topics takes time.
-            notes.append(unheard(self._node, self._output.publisher))
+            notes.append(no_subscriber_hint(self._node, self._output.publisher))
         if not self._output.enable():
             return 'the node is shutting down'
         if notes:
