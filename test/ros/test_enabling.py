@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from dynamics_node import RobotModel
 from dynamics_node.kernels.warm_up import warm_up
 from dynamics_node.ros.context import NodeContext
-from dynamics_node.ros.node import _limiter
+from dynamics_node.ros.node import effort_limiter
 from dynamics_node.ros.parameters.table import check_all
 from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.ros.torque_path.enabling import Enabling
@@ -77,7 +77,7 @@ class Parts(SimpleNamespace):
             time.monotonic(),
             OutputSettings(60.0, 1.0, 1.0, 'ramp_to_zero'),
             self.robot.compensation(self.parameters.values),
-            _limiter(self.robot, self.parameters.values),
+            effort_limiter(self.robot, self.parameters.values),
             self.robot.motion_limits(()),
         )
 

@@ -95,5 +95,5 @@ def test_an_executor_that_computes_while_it_waits_is_refused(ros, monkeypatch):
     monkeypatch.setattr(rclpy.experimental, 'EventsExecutor', Busy, raising=False)
     # Beside other tests it gets a part of a core only.
     monkeypatch.setattr(executor, 'BUSY_SHARE', 0.05)
-    with pytest.raises(UnsoundExecutorError, match='it computes while nothing happens'):
+    with pytest.raises(UnsoundExecutorError, match='it uses the processor while it waits'):
         make_executor('events')

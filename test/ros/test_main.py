@@ -90,8 +90,8 @@ def loop(fails, signals=None, **options):
 
 @pytest.fixture(autouse=True)
 def quiet(monkeypatch):
-    monkeypatch.setattr(main, '_load_the_rest', lambda: None)
-    monkeypatch.setattr(main, '_spare_the_garbage_collector', lambda: None)
+    monkeypatch.setattr(main, '_load_scipy', lambda: None)
+    monkeypatch.setattr(main, '_freeze_startup_objects', lambda: None)
 
 
 def test_an_executor_that_keeps_failing_stops_the_output_and_ends_with_an_error():

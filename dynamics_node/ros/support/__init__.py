@@ -1,6 +1,6 @@
 """
-Parts of ROS 2 that several rooms of the node use: errors, executors, qualities of service, hints.
+ROS 2 parts shared by the rooms of the node: errors, executors, quality of service, hints.
 
-What may change here: how rclpy is used. Nothing in here knows dynamics.
+What may change here: how rclpy is used. Nothing here depends on dynamics.
 
 """
