@@ -228,7 +228,7 @@ def test_joints_whose_speed_has_no_limit_are_named(parts):
     parts.use(RobotModel.from_urdf(PENDULUM.read_text().replace('velocity="20"', '')))
     parts.fresh(velocities=[0.0])
     assert (
-        'jumps and runaway are not noticed of hinge: the URDF has no velocity limit there; '
+        'jumps and runaway of hinge are not detected: the URDF has no velocity limit there; '
         'set velocity_limits'
     ) in parts.enable()[1]
 
@@ -236,7 +236,7 @@ def test_joints_whose_speed_has_no_limit_are_named(parts):
 def test_missing_velocities_are_named(parts):
     parts.fresh()
     assert (
-        'joint_states have no velocity of hinge: a runaway is noticed only' in (parts.enable()[1])
+        'joint_states have no velocity of hinge: a runaway is detected only' in (parts.enable()[1])
     )
 
 

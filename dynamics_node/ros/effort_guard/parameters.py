@@ -1,4 +1,9 @@
-"""Every parameter of the effort guard; docs/reference.md follows from this table."""
+"""The parameters of the effort guard, from which docs/reference.md is generated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
 
 from ..parameters.declaration import DOUBLE, DOUBLES, Parameter, ParameterError, TEXT
 from ...safety.effort_guard import GuardSettings
@@ -62,19 +67,19 @@ GUARD_PARAMETERS = (
 )
 
 
-def check_all(given):
+def check_all(given: Mapping[str, Any]) -> dict[str, Any]:
     """
-    Check values of parameters, and what holds between them.
+    Check all parameters, alone and together.
 
     Parameters
     ----------
-    given : dict of str to Any
-        Name → value as ROS delivers it; names that are missing keep their defaults.
+    given : mapping of str to Any
+        Name → value as ROS delivers it; missing names have their defaults.
 
     Returns
     -------
     dict of str to Any
-        All parameters, each in its kind.
+        Name → value of every parameter, in its Python type.
 
     Raises
     ------
