@@ -1,10 +1,21 @@
-"""Install the package where ament, colcon and `ros2 run` look for it."""
+"""Install the package where ament, colcon and `ros2 run` look for it; see also pyproject.toml."""
 
 from pathlib import Path
+import sys
 
 from setuptools import find_packages, setup
 
 package_name = 'dynamics_node'
+# `ros2 run dynamics_node NAME`; pip installs them for everything on PATH, as dynamics-NAME.
+programs = ('dynamics_node', 'effort_guard', 'markers', 'simulated_robot', 'demo', 'report')
+# colcon runs these commands; pip builds a wheel.
+is_for_ros = bool({'develop', 'install'} & set(sys.argv))
+
+
+def command(program):
+    """Return the entry point of a program under the name that it has here."""
+    name = program.replace('_', '-').removeprefix('dynamics-')
+    return f'{program if is_for_ros else "dynamics-" + name} = dynamics_node.programs:{program}'
 
 
 def files(folder, pattern):
@@ -12,12 +23,13 @@ def files(folder, pattern):
     return sorted(str(path) for path in Path(folder).glob(pattern))
 
 
-setup(
-    name=package_name,
-    version='0.1.0',
+distribution = setup(
     packages=find_packages(include=[package_name, f'{package_name}.*']),
-    # What the page of the model report is made of: styles, scripts, parts of its markup.
-    package_data={f'{package_name}.report.html': ['assets/*']},
+    # The page of the model report is made of these: styles, scripts, templates.
+    package_data={
+        package_name: ['py.typed'],
+        f'{package_name}.report.html': ['assets/*', 'templates/*'],
+    },
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
@@ -31,26 +43,10 @@ setup(
             files('config/robots', '*.urdf') + files('config/robots', '*.yaml'),
         ),
     ],
-    install_requires=['setuptools', 'numpy', 'numba', 'llvmlite', 'scipy', 'yourdfpy'],
-    extras_require={
-        'demo': ['mujoco', 'matplotlib', 'rich'],
-        'report': ['rich', 'plotly'],
-        'test': ['pytest', 'pytest-xdist', 'hypothesis', 'pin', 'mujoco', 'example-robot-data'],
-    },
-    python_requires='>=3.10',
     zip_safe=True,
-    maintainer='dynamics_node maintainers',
-    maintainer_email='maintainers@users.noreply.h-seed-ba9bdbfb.example',
-    description='Mass matrix, Coriolis matrix and gravity torque of a robot from its URDF',
     license='Apache-2.0',
-    entry_points={
-        'console_scripts': [
-            'dynamics_node = dynamics_node.ros.main:main',
-            'effort_guard = dynamics_node.ros.effort_guard.main:main',
-            'simulated_robot = dynamics_node.demo.simulated_robot:main',
-            'demo = dynamics_node.demo.__main__:main',
-            'report = dynamics_node.report.__main__:main',
-            'markers = dynamics_node.visualization.markers.__main__:main',
-        ]
-    },
+    entry_points={'console_scripts': [command(program) for program in programs]},
 )
+# colcon reads the attributes back as Python literals, which a parsed version specifier is not.
+for owner in (distribution, distribution.metadata):
+    owner.python_requires = str(distribution.python_requires)

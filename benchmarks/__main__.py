@@ -1,4 +1,4 @@
-"""`python -m benchmarks`: measure, print the report, write it and its plot."""
+"""`python -m benchmarks`: measure, print and write the report and its plot."""
 
 import argparse
 from pathlib import Path
@@ -21,7 +21,7 @@ def main(arguments=None):
     Parameters
     ----------
     arguments : list of str, optional
-        Those of the command line if not given.
+        Default: those of the command line.
 
     Returns
     -------
@@ -53,16 +53,14 @@ def main(arguments=None):
         help='joints of the largest chain and tree (default: %(default)s)',
     )
     parser.add_argument(
-        '--rivals',
+        '--libraries',
         nargs='*',
         choices=libraries.FILES,
         default=list(libraries.FILES),
-        help='libraries to measure beside this one (default: all)',
+        help='libraries to compare with (default: all)',
     )
     parser.add_argument(
-        '--without-sections',
-        action='store_true',
-        help='leave out what needs ROS: the node, starting up',
+        '--without-sections', action='store_true', help='omit the sections that need ROS'
     )
     options = parser.parse_args(arguments)
     if options.rounds < 1 or options.states < 1:
@@ -71,7 +69,7 @@ def main(arguments=None):
         options.rounds,
         options.states,
         sizes=[size for size in SIZES if size <= options.largest],
-        names=options.rivals,
+        names=options.libraries,
         with_sections=not options.without_sections,
         say=lambda text: print(text, file=sys.stderr, flush=True),
     )

@@ -1,19 +1,19 @@
-"""Before the clock starts: does a library compute the same numbers as this one."""
+"""The check before timing: a library computes the same numbers as this one."""
 
 import numpy as np
 
-# Of the largest element of D, C, G, ...: the measured differences are about 1e-15.
+# Relative to the largest element of D, C, G, ...; measured differences are about 1e-15.
 TOLERANCE = 1e-8
 CHECKED_STATES = 4
 
 
 class DifferentResultError(Exception):
-    """A library returns other numbers than this one, so its time would mean nothing."""
+    """A library returns other numbers than this one; its times would be meaningless."""
 
 
 def expected_parts(robot, quantity, state):
     """
-    Return what the parts of a call's result must be, by this library.
+    Return the expected parts of a call's result, by this library.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def expected_parts(robot, quantity, state):
 
 def check(robot, quantity, call):
     """
-    Hold a call's results against this library's.
+    Compare a call's results with those of this library.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def check(robot, quantity, call):
     Returns
     -------
     float
-        The largest difference, as a part of the largest element.
+        The largest difference, relative to the largest element.
 
     Raises
     ------

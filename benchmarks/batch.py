@@ -8,10 +8,10 @@ import numpy as np
 
 from .timing import interleaved, one_core
 
-# A loop costs the same for every state, so a part of the states is enough to time it.
+# Share of the states that a loop is timed with: it takes the same time for each.
 LOOP_PART = 0.02
-# Ours into arrays that are there, and ours with the making of 84 MB of arrays.
-OURS, FRESH = 'dynamics_node', 'dynamics_node, fresh arrays'
+# Into existing arrays, and with the allocation of 84 MB of arrays.
+DYNAMICS_NODE, FRESH = 'dynamics_node', 'dynamics_node, fresh arrays'
 CHECKED = 64
 TOLERANCE = 1e-8
 
@@ -29,10 +29,10 @@ class BatchRow:
         'one' or 'all'.
     seconds : list of float
         For all states, one number per round.
-    ours : dict of str to list of float
-        This library's on 'one' core and on 'all', same rounds.
+    reference : dict of str to list of float
+        Times of this library on 'one' core and on 'all', same rounds.
     cores_used : list of float
-        CPU time of the process divided by the time that passed.
+        CPU time of the process divided by elapsed time.
 
     """
 
@@ -40,7 +40,7 @@ class BatchRow:
     how: str
     cores: str
     seconds: list
-    ours: dict
+    reference: dict
     cores_used: list
 
 
@@ -54,7 +54,7 @@ def measure(robot, count, loaded, rounds, say=print):
     count : int
         Number of states, N.
     loaded : dict of str to module
-        Of these, Pinocchio and frax take part.
+        Pinocchio and frax are used.
     rounds : int
     say : callable
 
@@ -62,7 +62,7 @@ def measure(robot, count, loaded, rounds, say=print):
     -------
     rows : list of BatchRow
     refused : list of str
-        A sentence for each library that was not timed because it differs.
+        A sentence for each library that was not timed because its results differ.
 
     """
     rng = np.random.default_rng(5)
@@ -74,7 +74,7 @@ def measure(robot, count, loaded, rounds, say=print):
     answer = dynamics(Q, QD)
     functions: dict = {}
     for cores, threads in (('one', 1), ('all', all_cores)):
-        functions[OURS, f'dynamics(Q, QD, out=answer, threads={threads})', cores] = (
+        functions[DYNAMICS_NODE, f'dynamics(Q, QD, out=answer, threads={threads})', cores] = (
             lambda threads=threads: dynamics(Q, QD, out=answer, threads=threads),
             1.0,
         )
@@ -146,7 +146,7 @@ def pinocchio_loop(call, Q, QD):
 
 
 def _admit(functions, refused, key, function, scale, robot, Q, QD, parts):
-    # The first states must be the same numbers as ours, as in `agreement`.
+    # The results of the first states have to agree, as in `agreement`.
     D, C, G = robot.model.dynamics(Q[:CHECKED], QD[:CHECKED])
     expected = {'D': D, 'C': C, 'G': G, 'C qd': np.einsum('bij,bj->bi', C, QD[:CHECKED])}
     for part, value in zip(parts, function(), strict=True):
@@ -170,14 +170,14 @@ def _timed(functions, rounds):
     scaled = {
         key: [scale * value for value in samples[key]] for key, (_, scale) in functions.items()
     }
-    ours = {key[2]: scaled[key] for key in functions if key[0] == OURS}
+    reference = {key[2]: scaled[key] for key in functions if key[0] == DYNAMICS_NODE}
     return [
         BatchRow(
             library,
             how,
             cores,
             scaled[library, how, cores],
-            ours,
+            reference,
             meters[library, how, cores].cores_used,
         )
         for library, how, cores in functions
@@ -185,7 +185,7 @@ def _timed(functions, rounds):
 
 
 class _Meter:
-    # Runs a function on one core or on all, and notes how many it keeps busy.
+    # Runs a function on one core or on all, and records the number of busy cores.
     def __init__(self, function, cores):
         self.function, self.cores, self.cores_used = function, cores, []
 

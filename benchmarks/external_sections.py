@@ -1,11 +1,11 @@
 """
-Sections that other files measure: trajectories, the node.
+Sections measured by other files: trajectories, the node.
 
     python -m benchmarks.external_sections node
 
-Such a file is `benchmarks/NAME.py`. Its docstring becomes the text of the section, and its
-`measure()` returns a list of rows, each a dict of column title → text or number. If it raises,
-for example because ROS is missing, the report says so.
+The docstring of such a file, `benchmarks/NAME.py`, is the text of the section. Its `measure()`
+returns a list of rows, each a dict of column title → text or number. An exception, for example
+because ROS is missing, is reported in the section.
 
 """
 
@@ -22,7 +22,7 @@ from .libraries import version_of
 from .robots import ROOT
 
 # Key → title, file.
-PLACES = {
+SECTIONS = {
     'trajectory': ('Trajectories', 'trajectory_effort'),
     'node': ('The node', 'node_latency'),
 }
@@ -37,7 +37,7 @@ class Section:
     ----------
     title : str
     text : str
-        What was measured and how, or why it was not.
+        Method of the measurement, or reason of its absence.
     rows : list of dict
         Column title → text or number; the same columns in each row.
 
@@ -50,7 +50,7 @@ class Section:
 
 def measure(say=print):
     """
-    Let the files measure that are there.
+    Measure all sections.
 
     Parameters
     ----------
@@ -62,28 +62,28 @@ def measure(say=print):
 
     """
     sections = {}
-    for key, (title, name) in PLACES.items():
+    for key, (title, name) in SECTIONS.items():
         if util.find_spec(f'{__package__}.{name}') is None:
             sections[key] = Section(title, f'Not measured: there is no benchmarks/{name}.py.')
             continue
         say(f'section: {title}')
         try:
             sections[key] = measure_one(key)
-        except Exception as error:  # one section must not cost the minutes of all others
+        except Exception as error:  # the results of the other sections stay
             sections[key] = Section(title, f'Not measured: {type(error).__name__}: {error}')
     return sections
 
 
 def measure_one(key):
-    """Measure the section of a key of PLACES; return a Section."""
-    title, name = PLACES[key]
+    """Measure the section of a key of SECTIONS; return a Section."""
+    title, name = SECTIONS[key]
     module = import_module(f'.{name}', __package__)
     return Section(title, inspect.getdoc(module) or '', list(module.measure()))
 
 
-def put(report, section, facts):
+def replace(report, section, facts):
     """
-    Put a section that was measured alone into a report.
+    Replace a section of a report by one that was measured alone.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def put(report, section, facts):
         Markdown with a heading of the section's title.
     section : Section
     facts : dict of str to str
-        On what it was measured.
+        The machine and versions of the measurement.
 
     Returns
     -------
@@ -115,12 +115,12 @@ def put(report, section, facts):
 def main(arguments=None):
     """Measure one section and rewrite it in docs/benchmarks.md."""
     parser = argparse.ArgumentParser(prog='python -m benchmarks.external_sections')
-    parser.add_argument('section', choices=PLACES)
+    parser.add_argument('section', choices=SECTIONS)
     key = parser.parse_args(arguments).section
     facts = describe() | {'rclpy': version_of('ros-rclpy') or version_of('rclpy') or 'unknown'}
     section = measure_one(key)
     path = ROOT / 'docs' / 'benchmarks.md'
-    path.write_text(put(path.read_text(encoding='utf-8'), section, facts), encoding='utf-8')
+    path.write_text(replace(path.read_text(encoding='utf-8'), section, facts), encoding='utf-8')
     print(tables.section_table(section))
     return 0
 

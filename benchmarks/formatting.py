@@ -1,4 +1,4 @@
-"""Numbers as a reader wants them: three digits, a unit that fits, the spread in brackets."""
+"""Text of numbers: three digits, a fitting unit, the spread in brackets."""
 
 _UNITS = ((1.0, 's'), (1e-3, 'ms'), (1e-6, 'µs'), (1e-9, 'ns'))
 
@@ -22,7 +22,7 @@ def digits(value):
 
 def time_text(seconds):
     """
-    Return a time in the largest unit that leaves it at least 1.
+    Return a time in the largest unit in which it is at least 1.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ def chain(count):
 
 def binary_tree(count):
     """
-    Return a balanced tree of revolute joints, two children to a link as long as they last.
+    Return a balanced binary tree of revolute joints.
 
     Parameters
     ----------
@@ -33,10 +33,10 @@ def binary_tree(count):
     Returns
     -------
     str
-        URDF, depth first: every library then counts the joints in the same order.
+        URDF, depth first: all libraries then number the joints in the same order.
 
     """
-    # Node k of the heap has the parent (k - 1) // 2; renumbered in the order of a walk.
+    # Node k of the heap has the parent (k - 1) // 2; renumbered depth first.
     order, stack = [], [0]
     while stack:
         k = stack.pop()
@@ -51,7 +51,7 @@ def _urdf(parents):
     lines = ['<robot name="generated">', '<link name="base"/>']
     for k, parent in enumerate(parents):
         mass = rng.uniform(0.5, 2.0)
-        # The inertia of a box with these edges is that of a real body.
+        # The inertia of a box is physically possible.
         x, y, z = rng.uniform(0.02, 0.1, 3) ** 2
         com, origin = rng.normal(0.0, 0.03, 3), rng.normal(0.0, 0.05, 3)
         axis = rng.normal(size=3)

@@ -1,4 +1,4 @@
-"""On what a run was made: machine, versions, commit."""
+"""The host of a run: machine, versions, commit."""
 
 import os
 from pathlib import Path
@@ -34,7 +34,7 @@ def describe():
 
 def commit():
     """
-    Return the commit of this checkout, and whether what is measured differs from it.
+    Return the commit of this checkout, and whether the measured code differs from it.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""How much memory a batch needs besides its result, in a fresh process."""
+"""Peak memory of a batch besides its result, in a new process."""
 
 import json
 from pathlib import Path
@@ -22,7 +22,7 @@ def peak_besides_result(count):
     Returns
     -------
     dict or None
-        'result' and 'besides', bytes; None where Linux' /proc cannot tell.
+        'result' and 'besides', bytes; None without Linux's /proc.
 
     """
     run = subprocess.run(
@@ -38,14 +38,14 @@ def peak_besides_result(count):
 
 
 def main(count):
-    """Print what one batch call took, as JSON."""
+    """Print the memory of one batch call, as JSON."""
     robot = arm7()
     robot.model.specialize()
     rng = np.random.default_rng(5)
     Q, QD = rng.uniform(-1.0, 1.0, (2, count, robot.n))
-    # The code is loaded, and the first threads are there, before the measured call.
+    # Loads the code and starts the threads before the measured call.
     robot.model.dynamics(Q[:1000], QD[:1000])
-    # 5 sets the peak back to what is resident now.
+    # 5 resets the peak to the resident memory.
     Path('/proc/self/clear_refs').write_text('5')
     before = _status('VmRSS')
     result = robot.model.dynamics(Q, QD)

@@ -32,16 +32,15 @@ from .node_stream import Stream
 
 ROBOT = ROOT / 'config' / 'robots' / 'arm7.urdf'
 RATES = (100, 500, 1000)
-# Slices per rate and process, and the length of one, s: shorter than the state timeout.
-SLICES = 9
+SLICES = 9  # per rate and process
+# Duration of a slice, s: shorter than the state timeout.
 SLICE = 0.4
-# Service calls: bursts per kind, and calls per burst.
-BURSTS = 15
-CALLS = 25
+BURSTS = 15  # of service calls, per kind
+CALLS = 25  # per burst
 STARTS = 4
-# Points of a trajectory, and calls with it.
-POINTS = 10_000
-TRAJECTORIES = 5
+POINTS = 10_000  # of a trajectory
+TRAJECTORIES = 5  # calls with it
+# Timeout of all waits, s.
 PATIENCE = 30.0
 
 
@@ -54,11 +53,11 @@ class Row:
     ----------
     name : str
     rate : float or None
-        Of the joint states, Hz.
+        Rate of the joint states, Hz.
     unit : str
-    ours, relay : float
+    node, relay : float
     ratio : float
-        For a start: not a ratio but the difference, s.
+        For a start: the difference, s.
     spread : tuple of float
         First and third quartile of the ratio (or difference) over the slices.
 
@@ -67,17 +66,16 @@ class Row:
     name: str
     rate: float | None
     unit: str
-    ours: float
+    node: float
     relay: float
     ratio: float
     spread: tuple[float, float]
 
 
 class Driver:
-    """The one process that feeds both, and listens to both."""
+    """The node that sends to both processes and receives from both."""
 
     def __init__(self):
-        """Join ROS with a node that has nothing but what is measured."""
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
 
@@ -87,7 +85,7 @@ class Driver:
         self.executor.add_node(self.node)
 
     def until(self, condition, action=lambda: None, processes=()):
-        """Spin, doing an action every 10 ms, until a condition holds."""
+        """Spin until a condition holds, with an action every 10 ms."""
         end = time.monotonic() + PATIENCE
         due = time.monotonic()
         while not condition():
@@ -105,14 +103,14 @@ class Driver:
             self.executor.spin_once(timeout_sec=0.002)
 
     def call(self, client, request, action=lambda: None):
-        """Return the answer of a service."""
+        """Return the response of a service."""
         self.until(client.service_is_ready, action)
         future = client.call_async(request)
         self.until(future.done, action)
         return future.result()
 
     def close(self):
-        """Leave ROS."""
+        """Shut ROS down."""
         import rclpy
 
         self.executor.shutdown()
@@ -129,16 +127,16 @@ def measure_all(
     arguments=(),
 ):
     """
-    Measure everything.
+    Run all measurements.
 
     Parameters
     ----------
     rates : sequence of float
         Rates of the joint states, Hz.
     slices, starts, bursts, trajectories : int
-        Repetitions; 0 leaves a part out.
+        Repetitions; 0 omits a part.
     arguments : sequence of str
-        More of the node's command line: options to compare.
+        Further arguments of the node's command line.
 
     Returns
     -------
@@ -147,10 +145,10 @@ def measure_all(
     Raises
     ------
     RuntimeError
-        If a process ends or does not answer; says what it printed.
+        If a process ends or does not answer; with its output.
 
     """
-    # A domain of one's own, unless whoever starts this has chosen one.
+    # A separate domain, unless the environment names one.
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     os.environ.setdefault('ROS_DOMAIN_ID', str(os.getpid() % 100 + 1))
     driver = Driver()
@@ -166,12 +164,12 @@ def measure_all(
 
 
 def measure():
-    """Return the rows of `measure_all` as the report wants them: column title → text."""
+    """Return the rows of `measure_all` for the report: column title → text."""
     return [
         {
             'what': row.name,
             'joint states': f'{row.rate:g} Hz' if row.rate else '',
-            'node': f'{row.ours:.3g} {row.unit}',
+            'node': f'{row.node:.3g} {row.unit}',
             'bare rclpy': f'{row.relay:.3g} {row.unit}',
             'ratio': _ratio_text(row),
             'quartiles': _quartiles_text(row),
@@ -189,7 +187,7 @@ def _quartiles_text(row):
 
 
 def measure_streams(driver, rates, slices, arguments=()):
-    """Return the rows about latency and processor time of joint states."""
+    """Return the rows of latency and processor time of joint states."""
     if not slices:
         return []
     robot = RobotModel.from_urdf(ROBOT)
@@ -209,7 +207,7 @@ def measure_streams(driver, rates, slices, arguments=()):
             latencies: list[list] = [[], []]
             cpu: list[list] = [[], []]
             for index in range(slices):
-                # Both orders, so that what comes first has no advantage.
+                # In both orders: the first one has no advantage.
                 for which in (0, 1) if index % 2 else (1, 0):
                     if which == 0:
                         keep_on()
@@ -225,7 +223,7 @@ def measure_streams(driver, rates, slices, arguments=()):
 
 
 class _Enabler:
-    """Sees to it that the node's output is ACTIVE, so that it answers with commands."""
+    """Enables the node's output, so that it answers with commands."""
 
     def __init__(self, driver, stream):
         self._driver, self._stream = driver, stream
@@ -233,13 +231,13 @@ class _Enabler:
         driver.node.create_subscription(
             OutputState,
             '/ours/dynamics_node/state',
-            self._heard,
+            self._on_state,
             QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL),
         )
         self._client = driver.node.create_client(SetBool, '/ours/dynamics_node/enable')
 
     def __call__(self):
-        for _ in range(3):  # hear of a fault in the pause
+        for _ in range(3):  # receive a fault of the pause
             self._driver.executor.spin_once(timeout_sec=0.0)
         end = time.monotonic() + PATIENCE
         while self._state != 'ACTIVE':
@@ -251,13 +249,13 @@ class _Enabler:
         self._stream.send()
         time.sleep(0.02)
 
-    def _heard(self, message):
+    def _on_state(self, message):
         self._state = message.name
 
 
 def _states(robot, count):
-    # The second joint moves slowly: a position of its own for every state of a slice, and no
-    # step that a limit would cut.
+    # The second joint moves slowly: each state of a slice has another position, and no step
+    # exceeds a rate limit.
     states = np.tile(
         np.clip(np.full(len(robot.joint_names), 0.3), *robot.position_limits.T), (count, 1)
     )
@@ -299,7 +297,7 @@ def _stream_rows(rate, latencies, cpu):
 
 
 def _answered(rate, streams):
-    # Both ends keep only the newest, so what comes too fast is passed over, not queued.
+    # Both ends keep only the newest message: states that come too fast are skipped.
     shares = [1.0 - stream.lost / stream.sent for stream in streams]
     for stream in streams:
         stream.lost = stream.sent = 0
@@ -309,7 +307,7 @@ def _answered(rate, streams):
 
 
 def measure_services(driver, bursts, arguments=()):
-    """Return the rows about get_mass_matrix, each against std_srvs/Trigger."""
+    """Return the rows of get_mass_matrix, relative to std_srvs/Trigger."""
     if not bursts:
         return []
     robot = RobotModel.from_urdf(ROBOT)
@@ -331,7 +329,7 @@ def measure_services(driver, bursts, arguments=()):
             driver.until(ready, processes=[ours, bare])
 
         def warm(client, request):
-            # The newest state must be fresh, and the caches of both processes warm.
+            # Needs a fresh state; fills the caches of both processes.
             end = time.monotonic() + PATIENCE
             while True:
                 states.publish(measured)
@@ -390,7 +388,7 @@ def _burst(driver, client, request):
 
 
 def measure_trajectories(driver, rounds, arguments=()):
-    """Return the row about a long trajectory, against a service that only returns it."""
+    """Return the row of a long trajectory, relative to a service that only returns it."""
     if not rounds:
         return []
     robot = RobotModel.from_urdf(ROBOT)
@@ -408,14 +406,14 @@ def measure_trajectories(driver, rounds, arguments=()):
             driver.until(client.service_is_ready, processes=[ours, bare])
         times: list[list] = [[], []]
         for index in range(rounds + 1):
-            # Both orders, so that what comes first has no advantage.
+            # In both orders: the first one has no advantage.
             for which in (0, 1) if index % 2 else (1, 0):
                 begin = time.perf_counter()
                 answer = driver.call(clients[which], request)
                 times[which].append(time.perf_counter() - begin)
                 if not answer.success:
                     raise RuntimeError(f'expected success, got: {answer.message}')
-    # The first call is for the caches.
+    # The first call fills the caches.
     a, b = (part[1:] for part in times)
     ratios = [x / y for x, y in zip(a, b, strict=True)]
     return [
@@ -432,7 +430,7 @@ def measure_trajectories(driver, rounds, arguments=()):
 
 
 def _trajectory(robot):
-    # All joints swing; velocities and accelerations are left to the node.
+    # All joints swing; the node computes velocities and accelerations.
     n = len(robot.joint_names)
     angle = np.linspace(0.0, 20.0, POINTS)[:, None] + np.arange(n)
     trajectory = JointTrajectory(joint_names=robot.joint_names)
@@ -445,14 +443,14 @@ def _trajectory(robot):
 
 
 def measure_starts(driver, starts, arguments=()):
-    """Return the row about the time from process start to the first gravity torque."""
+    """Return the row of the time from process start to the first gravity torque."""
     if not starts:
         return []
     robot = RobotModel.from_urdf(ROBOT)
     measured = JointState(name=list(robot.joint_names), position=robot.neutral_position.tolist())
     states = driver.node.create_publisher(JointState, '/start/joint_states', 1)
     ours, bare = [], []
-    # The first start is for the caches of the disk and of compiled kernels.
+    # The first start fills the caches of the disk and of compiled kernels.
     for index in range(starts + 1):
         pair = [
             _start(
@@ -526,14 +524,14 @@ def table(rows):
     for row in rows:
         rate = f'{row.rate:g} Hz' if row.rate else ''
         lines.append(
-            f'| {row.name} | {rate} | {row.ours:.3g} {row.unit} | {row.relay:.3g} '
+            f'| {row.name} | {rate} | {row.node:.3g} {row.unit} | {row.relay:.3g} '
             f'{row.unit} | {_ratio_text(row)} | {_quartiles_text(row)} |'
         )
     return '\n'.join(lines)
 
 
 def main():
-    """Print the table; further arguments go to the node."""
+    """Print the table; arguments are passed to the node."""
     begin = time.monotonic()
     rows = measure_all(arguments=sys.argv[1:])
     print(table(rows))

@@ -8,7 +8,7 @@ import sys
 import tempfile
 
 ROOT = Path(__file__).parents[1]
-# The output of a slow machine must not run into a fault in the pause between two slices.
+# s: long, so that the pause between two slices causes no fault on a slow machine.
 STATE_TIMEOUT = 0.5
 
 
@@ -16,7 +16,7 @@ class Measured:
     """A process and the processor time that it has used."""
 
     def __init__(self, module, *arguments):
-        """Start `python -m module arguments`; what it prints is kept for `problem`."""
+        """Start `python -m module arguments`; its output is kept for `problem`."""
         self._log = tempfile.TemporaryFile('w+')  # noqa: SIM115 (closed by close)
         self._process = subprocess.Popen(
             [sys.executable, '-m', module, *arguments],
@@ -32,8 +32,7 @@ class Measured:
         Returns
         -------
         float
-            s; of the scheduler's own count in nanoseconds, because ticks of 10 ms are too
-            coarse for a slice.
+            s, from the scheduler's count in nanoseconds: ticks of 10 ms are too coarse.
 
         """
         total = 0
@@ -45,16 +44,16 @@ class Measured:
         return total * 1e-9
 
     def is_running(self):
-        """Tell whether it has not ended."""
+        """Return whether the process is running."""
         return self._process.poll() is None
 
     def problem(self):
-        """Return what it printed, for an error message."""
+        """Return the end of its output, for an error message."""
         self._log.seek(0)
         return self._log.read()[-4000:]
 
     def close(self):
-        """End it in order; if it does not, by force."""
+        """End the process by SIGINT, or else kill it."""
         self._process.send_signal(signal.SIGINT)
         try:
             self._process.wait(5.0)
@@ -66,7 +65,7 @@ class Measured:
 
 @contextmanager
 def started(module, *arguments):
-    """Run a module as a process for the time of a with block."""
+    """Run a module as a process during a with block."""
     process = Measured(module, *arguments)
     try:
         yield process
@@ -75,7 +74,7 @@ def started(module, *arguments):
 
 
 def node(urdf, *arguments, namespace='/ours'):
-    """Run the node with a robot, its topics in a namespace, for the time of a with block."""
+    """Run the node with a robot, its topics in a namespace, during a with block."""
     return started(
         'dynamics_node.ros.main',
         *arguments,
@@ -90,5 +89,5 @@ def node(urdf, *arguments, namespace='/ours'):
 
 
 def relay(kind, namespace='/relay'):
-    """Run a bare node of `relay.py`, its topics in a namespace, for the time of a with block."""
+    """Run a bare node of `relay.py`, its topics in a namespace, during a with block."""
     return started('benchmarks.relay', kind, '--ros-args', '-r', f'__ns:={namespace}')

@@ -1,4 +1,4 @@
-"""A stream of joint states to one process, and the commands that come back, matched one by one."""
+"""A stream of joint states to one process, each matched with its command."""
 
 from array import array
 import bisect
@@ -10,22 +10,21 @@ from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
-# Time after the last state in which its command may still come, s.
-LATE = 0.05
+# Timeout of the command of the last state, s.
+ANSWER_TIMEOUT = 0.05
 
 
 class Stream:
     """
-    Feeds one process and notes when which command comes back.
+    Sends joint states to one process and records the times of its commands.
 
-    A Float64MultiArray has no stamp. So every state of a slice has a position of its own, the
-    command that belongs to it is known, and one number of it, which grows along the slice,
-    tells which state it answers.
+    A Float64MultiArray has no stamp. So each state of a slice has another position and a known
+    command, and one component of the commands grows along the slice and identifies the state.
 
     Attributes
     ----------
     sent, lost : int
-        States of all slices since they were set to zero, and those without an answer.
+        States since the last reset to zero, and those without an answer.
 
     """
 
@@ -36,15 +35,15 @@ class Stream:
         Parameters
         ----------
         node : rclpy.node.Node
-            Of the driver.
+            Node of the driver.
         namespace : str
-            Of the process.
+            Namespace of the process.
         names : sequence of str
             Joint names.
         positions : numpy.ndarray, shape (count, n)
             The states of a slice, rad or m.
         answers : numpy.ndarray, shape (count, n)
-            The commands that belong to them; one column grows strictly.
+            Their commands; one column increases strictly.
 
         """
         self._messages = [
@@ -57,7 +56,7 @@ class Stream:
         steps = (answers[1:] - answers[:-1]).min(axis=0)
         self._column = int(steps.argmax())
         if steps[self._column] <= 0.0:
-            raise ValueError('expected a column of answers that grows strictly, got none')
+            raise ValueError('expected a strictly increasing column of answers, got none')
         self._tolerance = 0.1 * steps[self._column]
         self._keys = answers[:, self._column].tolist()
         self._publisher = node.create_publisher(
@@ -65,7 +64,7 @@ class Stream:
             f'{namespace}/joint_states',
             QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE),
         )
-        # In a node of its own, so that the executor that is measured with it has little to do.
+        # A separate node: its executor, part of the measurement, has little to do.
         self._node = rclpy.create_node(
             'commands',
             context=node.context,
@@ -79,23 +78,23 @@ class Stream:
         self._subscription = self._node.create_subscription(
             Float64MultiArray,
             f'{namespace}/forward_effort_controller/commands',
-            self._heard,
+            self._on_command,
             QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE),
         )
         self.sent = self.lost = 0
 
     def is_matched(self):
-        """Tell whether both directions have found each other."""
+        """Return whether publisher and subscription are matched."""
         return bool(
             self._publisher.get_subscription_count() and self._subscription.get_publisher_count()
         )
 
     def send(self, index=0):
-        """Publish one state of the slice, without waiting for its command."""
+        """Publish one state of the slice."""
         self._publisher.publish(self._stamped(index))
 
     def drain(self):
-        """Forget the commands that have come."""
+        """Discard received commands."""
         for _ in range(20):  # more than its queue holds
             self._executor.spin_once(timeout_sec=0.0)
         self._received.clear()
@@ -109,12 +108,12 @@ class Stream:
         rate : float
             Hz.
         count : int
-            How many.
+            Number of states.
 
         Returns
         -------
         list of float
-            From publish to the callback with the command, s, of every state that was answered.
+            Time from publish to the callback of the command, s, of each answered state.
 
         """
         self.drain()
@@ -125,7 +124,7 @@ class Stream:
             message = self._stamped(index)
             sent.append(time.perf_counter())
             self._publisher.publish(message)
-        self._receive_until(time.perf_counter() + LATE)
+        self._receive_until(time.perf_counter() + ANSWER_TIMEOUT)
         latencies: dict[int, float] = {}
         for now, key in self._received:
             index = self._index(key)
@@ -137,13 +136,13 @@ class Stream:
         return answered
 
     def close(self, node):
-        """Take publisher and subscription away from the node again."""
+        """Destroy publisher and subscription."""
         node.destroy_publisher(self._publisher)
         self._executor.shutdown()
         self._node.destroy_node()
 
     def _stamped(self, index):
-        # As a robot's: a state from long ago, or the same one again, is no news to the node.
+        # A current stamp: the node ignores old and repeated states.
         message = self._messages[index]
         message.header.stamp = self._clock.now().to_msg()
         return message
@@ -152,12 +151,11 @@ class Stream:
         while (left := end - time.perf_counter()) > 0.0:
             self._executor.spin_once(timeout_sec=left)
 
-    def _heard(self, message):
+    def _on_command(self, message):
         self._received.append((time.perf_counter(), message.data[self._column]))
 
     def _index(self, key):
-        # The nearest of the known answers, if it is one of them at all: on the start ramp, for
-        # example, commands answer to no state of the slice.
+        # The nearest known answer; commands of the start ramp, for example, match none.
         right = bisect.bisect_left(self._keys, key - self._tolerance)
         if right < len(self._keys) and abs(self._keys[right] - key) <= self._tolerance:
             return right

@@ -1,8 +1,8 @@
 """
-A library that needs another Python: measured in a process of its own, this library beside it.
+A library that needs another Python: measured there together with this one, in one process.
 
-The child gets the URDF texts as JSON on its standard input and answers with rows; both
-libraries' times in a row are from the child, so their ratio is of one process and one run.
+The child reads URDF texts as JSON from standard input and writes rows. Both times of a row are
+from the child, so their ratio is one of the same process and run.
 
 """
 
@@ -17,20 +17,20 @@ from . import libraries
 from .robots import make_robot, ROOT
 from .single_call import measure, Row
 
-# `scripts/lib/rivals.sh` puts Debian's PyKDL and its library there.
+# Debian's PyKDL and its library are installed there before a run.
 KDL_PYTHON = Path(sys.prefix) / 'kdl' / 'bin' / 'python'
 
 
-def measure_beside(name, python, robots, rounds):
+def measure_elsewhere(name, python, robots, rounds):
     """
-    Measure one library in a process of its own.
+    Measure one library with another interpreter.
 
     Parameters
     ----------
     name : str
-        File in `rivals/`.
+        File in `libraries/`.
     python : pathlib.Path
-        The interpreter that has the library and what this one needs.
+        An interpreter with the library and the requirements of this one.
     robots : list of Robot
     rounds : int
 
@@ -42,7 +42,7 @@ def measure_beside(name, python, robots, rounds):
     Raises
     ------
     RuntimeError
-        If the process fails; with the last line that it said.
+        If the process fails; with its last line.
 
     """
     job = {
@@ -51,7 +51,7 @@ def measure_beside(name, python, robots, rounds):
         'robots': [[robot.name, robot.text] for robot in robots],
     }
     environment = dict(os.environ, LD_LIBRARY_PATH=str(python.parents[1] / 'lib'))
-    # What was sourced for this process's Python is of no use to another one.
+    # Variables of this process's Python would mislead the other one.
     for variable in ('PYTHONHOME', 'VIRTUAL_ENV'):
         environment.pop(variable, None)
     environment['PYTHONPATH'] = str(ROOT)
@@ -65,29 +65,29 @@ def measure_beside(name, python, robots, rounds):
         check=False,
     )
     if run.returncode != 0:
-        lines = run.stderr.strip().splitlines() or ['it said nothing']
+        lines = run.stderr.strip().splitlines() or ['without a message']
         raise RuntimeError(f'the process of {name} failed: {lines[-1]}')
-    answer = json.loads(run.stdout)
-    answer['rows'] = [Row(**row) for row in answer['rows']]
-    return answer
+    result = json.loads(run.stdout)
+    result['rows'] = [Row(**row) for row in result['rows']]
+    return result
 
 
 def main():
-    """Do the job on standard input; answer on standard output."""
+    """Measure the job on standard input; write the result to standard output."""
     job = json.load(sys.stdin)
     loaded, missing = libraries.load((job['name'],))
     if missing:
         sys.exit(missing[job['name']])
     robots = [make_robot(name, text) for name, text in job['robots']]
     rows, refused = measure(robots, loaded, job['rounds'], say=lambda text: None)
-    rival = loaded[job['name']]
+    library = loaded[job['name']]
     json.dump(
         {
             'rows': [asdict(row) for row in rows],
             'refused': refused,
-            'name': rival.NAME,
-            'note': rival.NOTE,
-            'version': getattr(rival, 'VERSION', None) or libraries.version_of(rival.PACKAGE),
+            'name': library.NAME,
+            'note': library.NOTE,
+            'version': getattr(library, 'VERSION', None) or libraries.version_of(library.PACKAGE),
             'python': '.'.join(map(str, sys.version_info[:3])),
             'numpy': libraries.version_of('numpy'),
         },

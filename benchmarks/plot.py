@@ -11,7 +11,7 @@ from .formatting import digits
 from .scaling import SHAPES
 from .timing import spread_of
 
-OURS = 'dynamics_node'
+DYNAMICS_NODE = 'dynamics_node'
 _LINES = {'chain': '-', 'binary tree': '--'}
 
 
@@ -30,7 +30,7 @@ def draw(results, path):
     grid = figure.add_gridspec(2, 2)
     _draw_single(results, figure.add_subplot(grid[0, :]))
     _draw_batch(results, figure.add_subplot(grid[1, 0]))
-    _draw_growth(results, figure.add_subplot(grid[1, 1]))
+    _draw_scaling(results, figure.add_subplot(grid[1, 1]))
     figure.savefig(path, dpi=110)
     pyplot.close(figure)
 
@@ -40,7 +40,7 @@ def _draw_single(results, axes):
     libraries = list(dict.fromkeys(row.library for row in rows))[::-1]
     for k, robot in enumerate(dict.fromkeys(row.robot for row in rows)):
         chosen = [row for row in rows if row.robot == robot]
-        # One below the other, so that three robots stay readable.
+        # One below the other: three robots stay readable.
         places = [libraries.index(row.library) + 0.3 * (1 - k) for row in chosen]
         _dots(axes, places, [spread_of(row.seconds) for row in chosen], 1e6, f'C{k}', robot)
     axes.set_yticks(range(len(libraries)), libraries)
@@ -60,7 +60,7 @@ def _draw_batch(results, axes):
             [place],
             [spread_of(row.seconds)],
             1e6 / results.batch_count,
-            'C0' if row.library == OURS else 'C7',
+            'C0' if row.library == DYNAMICS_NODE else 'C7',
         )
     axes.set_yticks(range(len(rows)), labels)
     axes.set_ylim(-0.6, len(rows) - 0.4)
@@ -74,10 +74,10 @@ def _draw_batch(results, axes):
     axes.set_title(f'{results.batch_count} states of a 7-joint arm in one call', fontsize=10)
 
 
-def _draw_growth(results, axes):
-    for number, library in enumerate(dict.fromkeys(row.library for row in results.growth)):
+def _draw_scaling(results, axes):
+    for number, library in enumerate(dict.fromkeys(row.library for row in results.scaling)):
         for shape in SHAPES:
-            rows = [row for row in results.growth if (row.shape, row.library) == (shape, library)]
+            rows = [row for row in results.scaling if (row.shape, row.library) == (shape, library)]
             axes.loglog(
                 [row.joints for row in rows],
                 [1e6 * spread_of(row.seconds).median for row in rows],
@@ -87,7 +87,7 @@ def _draw_growth(results, axes):
                 color=f'C{number}',
                 label=f'{library}, {shape}',
             )
-    sizes = list(dict.fromkeys(row.joints for row in results.growth))
+    sizes = list(dict.fromkeys(row.joints for row in results.scaling))
     axes.set_xticks(sizes, [str(size) for size in sizes])
     axes.set_xticks([], minor=True)
     axes.grid(alpha=0.3)

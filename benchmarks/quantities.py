@@ -1,4 +1,4 @@
-"""What is measured, and what a library has to hand over for it."""
+"""The measured quantities, and the `Call` by which a library computes one."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ QUANTITIES = {
 ARGUMENTS = {'dynamics': 2, 'mass_matrix': 1, 'gravity': 1, 'inverse': 3, 'forward': 3}
 
 
-def same(value):
+def identity(value):
     """Return the value itself."""
     return value
 
@@ -26,7 +26,7 @@ def same(value):
 @dataclass(frozen=True)
 class Call:
     """
-    How one library computes one quantity.
+    Computes one quantity with one library.
 
     Attributes
     ----------
@@ -34,20 +34,20 @@ class Call:
         Takes the first `ARGUMENTS` vectors of a state; returns a tuple, one item per part, or
         the array if there is one part.
     parts : tuple of str
-        What it returns: 'D', 'C', 'G', 'C qd', 'C qd + G', 'tau' or 'qdd'.
+        Returned parts: 'D', 'C', 'G', 'C qd', 'C qd + G', 'tau' or 'qdd'.
     how : str
-        The library's functions that it calls, for the report.
+        Called functions of the library, for the report.
     argument : callable
-        Makes the library's kind of vector of a numpy array, before the clock starts.
+        Converts a numpy array to the library's vector type, before the timing.
     array : callable
-        Makes a numpy array of a part of the result; for the check only.
+        Converts a part of the result to a numpy array; for the check only.
 
     """
 
     run: Callable[..., Any]
     parts: tuple[str, ...]
     how: str
-    argument: Callable[[np.ndarray], Any] = field(default=same)
+    argument: Callable[[np.ndarray], Any] = field(default=identity)
     array: Callable[[Any], np.ndarray] = field(default=np.asarray)
 
     def arguments(self, quantity, states):

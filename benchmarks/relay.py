@@ -1,5 +1,5 @@
 """
-The bare nodes that the node is compared with: plain rclpy, as a person would write them first.
+Minimal nodes in plain rclpy, as a reference for the node.
 
     python -m benchmarks.relay states | trigger | trajectory | torque [--ros-args ...]
 
@@ -20,10 +20,9 @@ RELIABLE = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE)
 
 
 class StatesRelay(Node):
-    """Passes the positions of joint_states on as a command of the same size."""
+    """Publishes the positions of joint_states as a command."""
 
     def __init__(self):
-        """Create one subscription and one publisher."""
         super().__init__('relay')
         self.commands = self.create_publisher(
             Float64MultiArray, 'forward_effort_controller/commands', RELIABLE
@@ -31,56 +30,53 @@ class StatesRelay(Node):
         self.create_subscription(JointState, 'joint_states', self.received, BEST_EFFORT)
 
     def received(self, message):
-        """Send what came."""
+        """Publish the positions."""
         self.commands.publish(Float64MultiArray(data=message.position))
 
 
 class TriggerServer(Node):
-    """Answers the smallest service that there is."""
+    """Serves std_srvs/Trigger."""
 
     def __init__(self):
-        """Create one service."""
         super().__init__('relay')
         self.create_service(Trigger, '~/trigger', self.answer)
 
     def answer(self, request, response):
-        """Say yes."""
+        """Return success."""
         response.success = True
         response.message = 'triggered'
         return response
 
 
 class TrajectoryServer(Node):
-    """Answers with the trajectory that it was sent, and that is all."""
+    """Serves ComputeTrajectoryEffort by returning the request."""
 
     def __init__(self):
-        """Create one service."""
         super().__init__('relay')
         self.create_service(ComputeTrajectoryEffort, '~/trajectory', self.answer)
 
     def answer(self, request, response):
-        """Send what came."""
+        """Return the received trajectory."""
         response.success = True
         response.trajectory = request.trajectory
         return response
 
 
 class TorqueSource(Node):
-    """Publishes a torque as soon as it runs: what starting a node costs at the least."""
+    """Publishes a torque as soon as it runs: the least start time of a node."""
 
     def __init__(self):
-        """Create one publisher, and begin."""
         super().__init__('relay')
         self.torques = self.create_publisher(JointState, '~/gravity_torque', RELIABLE)
         self.create_timer(0.01, self.publish)
 
     def publish(self):
-        """Send eight zeros."""
+        """Publish eight zeros."""
         self.torques.publish(JointState(effort=[0.0] * 8))
 
 
 def main():
-    """Run the node that the first argument names until SIGINT or SIGTERM."""
+    """Run the node of the first argument until SIGINT or SIGTERM."""
     kind = {
         'states': StatesRelay,
         'trigger': TriggerServer,

@@ -25,7 +25,7 @@ def render(results, picture):
     str
 
     """
-    parts = [_head(results, picture), *_single(results), *_batch(results), *_growth(results)]
+    parts = [_head(results, picture), *_single(results), *_batch(results), *_scaling(results)]
     for section in results.sections.values():
         parts += [f'## {section.title}', section.text, tables.section_table(section)]
     parts += _how(results)
@@ -83,13 +83,13 @@ def _batch(results):
     return parts
 
 
-def _growth(results):
+def _scaling(results):
     return [
         '## Growth with the number of joints',
         'D, C and G of one state of generated robots, from the same URDF text for both. '
         f'The exponent is fitted to the {FITTED} largest sizes, round by round. A dense D '
         'and C alone have n² entries for any algorithm.',
-        tables.growth_table(results),
+        tables.scaling_table(results),
     ]
 
 

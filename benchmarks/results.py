@@ -1,4 +1,4 @@
-"""Everything that one run has measured."""
+"""The results of one run."""
 
 from dataclasses import dataclass, field
 
@@ -6,20 +6,20 @@ from dataclasses import dataclass, field
 @dataclass
 class Results:
     """
-    What the report is rendered from; no other number gets into it.
+    All numbers of the report.
 
     Attributes
     ----------
     facts : dict of str to str
         Machine, versions, commit.
     libraries : dict of str to str
-        Name → version, of those that were measured.
+        Name → version of each measured library.
     notes : dict of str to str
-        Name → what its calls include.
+        Name → description of its calls.
     missing : dict of str to str
-        Name → why it was not measured.
+        Name → reason why it was not measured.
     refused : list of str
-        Sentences about what was not timed because its numbers differ.
+        A sentence for each call that was not timed because its results differ.
     rounds : int
     joints : dict of str to int
         Number of joints of each arm.
@@ -29,11 +29,11 @@ class Results:
         States in a batch.
     memory : dict or None
         As `memory.peak_besides_result` returns it.
-    growth : list of GrowthRow
+    scaling : list of ScalingRow
     sections : dict of str to Section
         'node'.
     seconds : float
-        How long the run took.
+        Duration of the run.
 
     """
 
@@ -48,6 +48,6 @@ class Results:
     batch: list = field(default_factory=list)
     batch_count: int = 0
     memory: dict | None = None
-    growth: list = field(default_factory=list)
+    scaling: list = field(default_factory=list)
     sections: dict = field(default_factory=dict)
     seconds: float = 0.0

@@ -9,15 +9,15 @@ from dynamics_node import RobotModel
 import numpy as np
 
 ROOT = Path(__file__).parents[1]
-# Nothing of this moves a fixed-base robot without contact, or it is friction, which differs
-# from library to library.
+# Without influence on a fixed-base robot without contact; friction, in `dynamics`, differs between
+# libraries.
 _DROPPED = ('visual', 'collision', 'dynamics', 'safety_controller', 'calibration')
 
 
 @dataclass(frozen=True)
 class Robot:
     """
-    One robot and states of it.
+    One robot and its states.
 
     Attributes
     ----------
@@ -41,9 +41,9 @@ class Robot:
         """Number of joints."""
         return len(self.model.joint_names)
 
-    def demand_order(self, names):
+    def check_joint_order(self, names):
         """
-        Hold a library to the order of joints in which all get the same numbers.
+        Check that a library has the same order of joints.
 
         Parameters
         ----------
@@ -53,7 +53,7 @@ class Robot:
         Raises
         ------
         ValueError
-            If it is another one.
+            If the order differs.
 
         """
         if names != self.model.joint_names:
@@ -62,13 +62,13 @@ class Robot:
 
 def arms():
     """
-    Return the arms that single calls are measured on.
+    Return the arms of the single calls.
 
     Returns
     -------
     list of Robot
-        UR5 (6 joints), Panda and arm7 (7 joints each, their fingers fixed: the fingers' mass
-        stays, and libraries without mimic joints can take part).
+        UR5 (6 joints), Panda and arm7 (7 joints each). Their fingers are fixed, with their mass:
+        some libraries have no mimic joints.
 
     """
     package = distribution('example-robot-data')
@@ -110,9 +110,9 @@ def make_robot(name, text, fixed=(), count=32):
     text : str
         URDF.
     fixed : sequence of str
-        Joints that are made fixed.
+        Joints to fix.
     count : int
-        Number of states; they are the same in every run.
+        Number of states, the same in every run.
 
     Returns
     -------
@@ -139,7 +139,7 @@ def reduced(text, fixed=()):
     text : str
         URDF.
     fixed : sequence of str
-        Joints that are made fixed.
+        Joints to fix.
 
     Returns
     -------

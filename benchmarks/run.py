@@ -1,11 +1,11 @@
-"""One run: everything is measured, in this process unless a library needs another Python."""
+"""One run of all measurements, in this process unless a library needs another Python."""
 
 from dataclasses import replace
 from time import perf_counter
 
 from . import batch, external_sections, host, libraries, memory, scaling, single_call
 from .libraries import dynamics_node
-from .other_interpreter import KDL_PYTHON, measure_beside
+from .other_interpreter import KDL_PYTHON, measure_elsewhere
 from .results import Results
 from .robots import arms
 
@@ -20,7 +20,7 @@ def run(
     say=print,
 ):
     """
-    Measure everything.
+    Run all measurements.
 
     Parameters
     ----------
@@ -31,13 +31,13 @@ def run(
     sizes : sequence of int
         Numbers of joints of the generated robots.
     names : sequence of str
-        Files in `rivals/`.
+        Files in `libraries/`.
     kdl_python : pathlib.Path
-        An interpreter that has PyKDL, for where this one has not.
+        An interpreter with PyKDL, used if this one lacks it.
     with_sections : bool
-        Whether other files measure their sections.
+        Whether to measure the sections of other files.
     say : callable
-        Told about the progress.
+        Prints the progress.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def run(
     results.batch, refused = batch.measure(robots[-1], batch_count, loaded, fewer, say)
     results.refused += refused
     results.memory = memory.peak_besides_result(batch_count)
-    results.growth, refused = scaling.measure(loaded, rounds, sizes, say)
+    results.scaling, refused = scaling.measure(loaded, rounds, sizes, say)
     results.refused += refused
     if with_sections:
         results.sections = external_sections.measure(say)
@@ -74,20 +74,20 @@ def run(
 def _add_kdl(results, missing, python, robots, rounds, say):
     say('single calls: PyKDL, in a process of its own')
     try:
-        answer = measure_beside('kdl', python, robots, rounds)
+        result = measure_elsewhere('kdl', python, robots, rounds)
     except RuntimeError as error:
         missing['kdl'] = str(error)
         return
     del missing['kdl']
-    name = answer['name']
-    results.libraries[name] = answer['version']
+    name = result['name']
+    results.libraries[name] = result['version']
     results.notes[name] = (
-        f'{answer["note"]} Debian builds it for its own Python only, so it ran in a separate '
-        f'process (Python {answer["python"]}, numpy {answer["numpy"]}) together with this '
+        f'{result["note"]} Debian builds it for its own Python only, so it ran in a separate '
+        f'process (Python {result["python"]}, numpy {result["numpy"]}) together with this '
         'library: its ratio comes from that process.'
     )
     label = f'{name} (own process)'
     results.single += [
-        replace(row, library=label) for row in answer['rows'] if row.library == name
+        replace(row, library=label) for row in result['rows'] if row.library == name
     ]
-    results.refused += answer['refused']
+    results.refused += result['refused']

@@ -1,4 +1,4 @@
-"""How the time of D, C and G grows with the number of joints."""
+"""Time of D, C and G by the number of joints."""
 
 from dataclasses import dataclass
 
@@ -12,12 +12,12 @@ from .timing import interleaved, spread_of
 
 SIZES = (2, 4, 8, 16, 32, 64, 128, 256)
 SHAPES = {'chain': chain, 'binary tree': binary_tree}
-# The exponent is fitted to the largest sizes; at the small end the way into a call dominates.
+# Number of the largest sizes for the fit of the exponent: overhead dominates at small ones.
 FITTED = 3
 
 
 @dataclass(frozen=True)
-class GrowthRow:
+class ScalingRow:
     """
     The times of one library for robots of one shape and size.
 
@@ -28,8 +28,8 @@ class GrowthRow:
     library : str
     seconds : list of float
         Per D, C and G, one number per round.
-    ours : list of float
-        This library's, same rounds.
+    reference : list of float
+        Times of this library, same rounds.
 
     """
 
@@ -37,7 +37,7 @@ class GrowthRow:
     joints: int
     library: str
     seconds: list
-    ours: list
+    reference: list
 
 
 def measure(loaded, rounds, sizes=SIZES, say=print):
@@ -47,7 +47,7 @@ def measure(loaded, rounds, sizes=SIZES, say=print):
     Parameters
     ----------
     loaded : dict of str to module
-        Of these, Pinocchio takes part.
+        Pinocchio is used.
     rounds : int
     sizes : sequence of int
         Numbers of joints.
@@ -55,7 +55,7 @@ def measure(loaded, rounds, sizes=SIZES, say=print):
 
     Returns
     -------
-    rows : list of GrowthRow
+    rows : list of ScalingRow
     refused : list of str
 
     """
@@ -80,27 +80,27 @@ def measure(loaded, rounds, sizes=SIZES, say=print):
                     call.arguments('dynamics', robot.states),
                 )
     say(f'growth: {rounds} rounds')
-    # All sizes in each round: what slows one round down then bends no curve.
+    # All sizes in each round: a slow round then affects all of them alike.
     samples = interleaved(candidates, rounds)
     return [
-        GrowthRow(shape, joints, name, seconds, samples[shape, joints, 'dynamics_node'])
+        ScalingRow(shape, joints, name, seconds, samples[shape, joints, 'dynamics_node'])
         for (shape, joints, name), seconds in samples.items()
     ], refused
 
 
 def exponent(rows, shape, library):
     """
-    Return the slope of log(time) over log(joints) at the large end, fitted round by round.
+    Return the slope of log(time) over log(joints) at the largest sizes, fitted per round.
 
     Parameters
     ----------
-    rows : list of GrowthRow
+    rows : list of ScalingRow
     shape, library : str
 
     Returns
     -------
     Spread or None
-        None if there are not two sizes.
+        None for fewer than two sizes.
 
     """
     chosen = sorted(
@@ -109,7 +109,7 @@ def exponent(rows, shape, library):
     )[-FITTED:]
     if len(chosen) < 2:
         return None
-    # A call that is slow only at the largest size takes part in fewer rounds.
+    # A call that is slow only at the largest size has fewer rounds.
     rounds = min(len(row.seconds) for row in chosen)
     slopes = np.polyfit(
         np.log([row.joints for row in chosen]), np.log([row.seconds[:rounds] for row in chosen]), 1

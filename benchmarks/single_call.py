@@ -1,4 +1,4 @@
-"""One state at a time, called from Python: every quantity, every library, three arms."""
+"""Single states from Python: all quantities, libraries and arms."""
 
 from dataclasses import dataclass
 
@@ -7,10 +7,9 @@ from .libraries import dynamics_node
 from .quantities import QUANTITIES
 from .timing import collector_off, interleaved
 
-# Every quantity gets its turn in each of so many passes over all of them, so that a slow minute
-# of the machine does not hit one robot alone.
+# Passes over all robots and quantities: a slow minute of the machine then affects all of them.
 PASSES = 3
-# Rounds of a pass that take part with calls that are slow.
+# Rounds of a pass for slow calls.
 SLOW_ROUNDS = 2
 
 
@@ -23,15 +22,15 @@ class Row:
     ----------
     robot, quantity, library : str
     parts : tuple of str
-        What the call returns.
+        Returned parts.
     how : str
-        The library's functions.
+        Called functions of the library.
     seconds : list of float
         Per call, one number per round.
-    ours : list of float
-        This library's in the same rounds of the same process.
+    reference : list of float
+        Times of this library in the same rounds of the same process.
     error : float
-        Largest difference from this library's result, as a part of the largest element.
+        Largest difference from this library's result, relative to the largest element.
 
     """
 
@@ -41,7 +40,7 @@ class Row:
     parts: tuple
     how: str
     seconds: list
-    ours: list
+    reference: list
     error: float
 
 
@@ -53,25 +52,25 @@ def measure(robots, loaded, rounds, say=print):
     ----------
     robots : list of Robot
     loaded : dict of str to module
-        As `rivals.load` returns them.
+        From `libraries.load`.
     rounds : int
     say : callable
-        Told about the progress.
+        Prints the progress.
 
     Returns
     -------
     rows : list of Row
         This library's own rows come first for each robot and quantity.
     refused : list of str
-        A sentence for each library and quantity that was not timed because it differs or fails.
+        A sentence for each call that was not timed because its results differ or it fails.
 
     """
     refused: list[str] = []
     groups = []
     for robot in robots:
         say(f'single calls: preparing {robot.name}')
-        offered = _offered(robot, loaded, refused)
-        groups += [_Group(robot, quantity, offered, refused) for quantity in QUANTITIES]
+        calls_by_name = _calls_by_name(robot, loaded, refused)
+        groups += [_Group(robot, quantity, calls_by_name, refused) for quantity in QUANTITIES]
     for number, part in enumerate(_parts(rounds), start=1):
         say(f'single calls: {part} rounds, pass {number}')
         with collector_off():
@@ -86,21 +85,21 @@ def _parts(rounds):
     return [part for part in parts if part]
 
 
-def _offered(robot, loaded, refused):
+def _calls_by_name(robot, loaded, refused):
     calls = {dynamics_node.NAME: dynamics_node.calls(robot)}
-    for rival in loaded.values():
+    for library in loaded.values():
         try:
-            calls[rival.NAME] = rival.calls(robot)
+            calls[library.NAME] = library.calls(robot)
         except (ValueError, RuntimeError) as error:
-            refused.append(f'{rival.NAME} does not take {robot.name}: {error}')
+            refused.append(f'{library.NAME} does not take {robot.name}: {error}')
     return calls
 
 
 class _Group:
-    # All libraries for one quantity of one robot: what is interleaved.
-    def __init__(self, robot, quantity, offered, refused):
+    # The interleaved libraries for one quantity of one robot.
+    def __init__(self, robot, quantity, calls_by_name, refused):
         self.candidates, self.rows = {}, {}
-        for name, calls in offered.items():
+        for name, calls in calls_by_name.items():
             call = calls.get(quantity)
             if call is None:
                 continue
@@ -116,5 +115,5 @@ class _Group:
         samples = interleaved(self.candidates, rounds, SLOW_ROUNDS)
         for name, seconds in samples.items():
             self.rows[name].seconds.extend(seconds)
-            # A slow library takes part in the first rounds: ours of the same ones.
-            self.rows[name].ours.extend(samples[dynamics_node.NAME][: len(seconds)])
+            # A slow library has fewer rounds.
+            self.rows[name].reference.extend(samples[dynamics_node.NAME][: len(seconds)])

@@ -58,7 +58,7 @@ def single_table(results, quantity):
             line += (
                 ['–', '–']
                 if row is None
-                else [time_text(spread_of(row.seconds).median), _ratio(row.seconds, row.ours)]
+                else [time_text(spread_of(row.seconds).median), _ratio(row.seconds, row.reference)]
             )
         body.append(line)
     return table(titles, body)
@@ -66,7 +66,7 @@ def single_table(results, quantity):
 
 def calls_table(results):
     """
-    Return what each library's call for each quantity is made of.
+    Return the table of called functions by library and quantity.
 
     Parameters
     ----------
@@ -111,8 +111,8 @@ def batch_table(results):
                 digits(spread_of(row.cores_used).median),
                 time_text(median),
                 time_text(median / results.batch_count),
-                _ratio(row.seconds, row.ours['one']),
-                _ratio(row.seconds, row.ours['all']),
+                _ratio(row.seconds, row.reference['one']),
+                _ratio(row.seconds, row.reference['all']),
             ]
         )
     return table(
@@ -130,7 +130,7 @@ def batch_table(results):
     )
 
 
-def growth_table(results):
+def scaling_table(results):
     """
     Return the table of chains and trees, the fitted exponents in its last row.
 
@@ -143,30 +143,30 @@ def growth_table(results):
     str
 
     """
-    rows = {(row.joints, row.shape, row.library): row for row in results.growth}
-    libraries = _unique(row.library for row in results.growth)
+    rows = {(row.joints, row.shape, row.library): row for row in results.scaling}
+    libraries = _unique(row.library for row in results.scaling)
     titles, body = ['joints'], []
     for shape in SHAPES:
         titles += [f'{shape}: {library}' for library in libraries] + ['ratio']
-    for joints in _unique(row.joints for row in results.growth):
+    for joints in _unique(row.joints for row in results.scaling):
         line = [str(joints)]
         for shape in SHAPES:
             for library in libraries:
                 row = rows.get((joints, shape, library))
                 line.append('–' if row is None else time_text(spread_of(row.seconds).median))
-            rival = rows.get((joints, shape, libraries[-1]))
-            line.append('–' if rival is None else _ratio(rival.seconds, rival.ours))
+            row = rows.get((joints, shape, libraries[-1]))
+            line.append('–' if row is None else _ratio(row.seconds, row.reference))
         body.append(line)
     last = ['exponent']
     for shape in SHAPES:
-        fits = [exponent(results.growth, shape, library) for library in libraries]
+        fits = [exponent(results.scaling, shape, library) for library in libraries]
         last += ['–' if fit is None else ratio_text(fit) for fit in fits] + ['–']
     return table(titles, [*body, last])
 
 
 def section_table(section):
     """
-    Return the table of a section that another file measured.
+    Return the table of a section measured by another file.
 
     Parameters
     ----------
@@ -193,8 +193,8 @@ def section_table(section):
     )
 
 
-def _ratio(theirs, ours):
-    return '1' if theirs is ours or theirs == ours else ratio_text(ratio_of(theirs, ours))
+def _ratio(seconds, reference):
+    return '1' if seconds == reference else ratio_text(ratio_of(seconds, reference))
 
 
 def _unique(values):

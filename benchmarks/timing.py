@@ -11,9 +11,9 @@ from time import perf_counter
 
 import numpy as np
 
-# A sample is a loop of calls that takes about this long, so the clock's own cost vanishes.
+# Duration of a sample, a loop of calls, s: long beside the time of reading the clock.
 SAMPLE_SECONDS = 0.008
-# One call longer than this is measured in the first rounds only.
+# A call longer than this, s, is measured in SLOW_ROUNDS rounds only.
 SLOW_CALL_SECONDS = 0.02
 SLOW_ROUNDS = 5
 
@@ -21,7 +21,7 @@ SLOW_ROUNDS = 5
 @dataclass(frozen=True)
 class Spread:
     """
-    The median of values from several rounds and the middle half of them.
+    Median and quartiles of the values of several rounds.
 
     Attributes
     ----------
@@ -52,39 +52,39 @@ def spread_of(values):
     return Spread(float(median), float(low), float(high))
 
 
-def ratio_of(theirs, ours):
+def ratio_of(seconds, reference):
     """
-    Return the spread of their time / our time, round by round.
+    Return the spread of the ratios of two times, round by round.
 
     Parameters
     ----------
-    theirs, ours : sequence of float
-        Seconds per call; entry r of both is from round r. A slow candidate may have fewer.
+    seconds, reference : sequence of float
+        Seconds per call; entry r of both is from round r. A slow call has fewer entries.
 
     Returns
     -------
     Spread
 
     """
-    rounds = min(len(theirs), len(ours))
-    return spread_of(np.asarray(theirs[:rounds]) / np.asarray(ours[:rounds]))
+    rounds = min(len(seconds), len(reference))
+    return spread_of(np.asarray(seconds[:rounds]) / np.asarray(reference[:rounds]))
 
 
 def interleaved(candidates, rounds, slow_rounds=SLOW_ROUNDS):
     """
     Time candidates in turns, each round in another order.
 
-    What disturbs the machine for a moment then hits neighbors alike, and no candidate always
-    finds the caches as the same other one left them. The garbage collector is off meanwhile.
+    A disturbance of the machine then affects neighbors alike, and no candidate always follows the
+    same other one in the caches. The garbage collector is off.
 
     Parameters
     ----------
     candidates : dict of hashable to (callable, sequence of tuple)
-        Name → function and the arguments that its calls go through in turn.
+        Name → function and the arguments of its calls, used in turn.
     rounds : int
         At least 1.
     slow_rounds : int
-        Rounds that candidates take part in whose single call is longer than SLOW_CALL_SECONDS.
+        Rounds of candidates with calls longer than SLOW_CALL_SECONDS.
 
     Returns
     -------
@@ -115,7 +115,7 @@ def time_of(function, arguments, count):
     ----------
     function : callable
     arguments : sequence of tuple
-        Taken in turn, so that a library that remembers its last state gains nothing.
+        Used in turn: caching the last state gains nothing.
     count : int
 
     Returns
@@ -132,7 +132,7 @@ def time_of(function, arguments, count):
 
 @contextmanager
 def collector_off():
-    """Collect garbage, unless an outer block has, then keep the collector off as `timeit` does."""
+    """Collect garbage, then disable the collector as `timeit` does; blocks may be nested."""
     was_enabled = gc.isenabled()
     if was_enabled:
         gc.collect()
@@ -146,29 +146,29 @@ def collector_off():
 
 @contextmanager
 def one_core():
-    """Hold every thread of this process on one core, where the system can do that."""
+    """Pin all threads of this process to one core, if the system supports it."""
     if not hasattr(os, 'sched_setaffinity'):
         yield
         return
     before = os.sched_getaffinity(0)
-    _hold_threads({min(before)})
+    _pin_threads({min(before)})
     try:
         yield
     finally:
-        _hold_threads(before)
+        _pin_threads(before)
 
 
-def _hold_threads(cores):
-    # Threads that start later inherit the cores of the one that starts them.
+def _pin_threads(cores):
+    # New threads inherit the cores of their creator.
     for task in Path('/proc/self/task').iterdir():
         try:
             os.sched_setaffinity(int(task.name), cores)
-        except ProcessLookupError:  # that thread has just ended
+        except ProcessLookupError:  # the thread has just ended
             continue
 
 
 def _calibrate(function, arguments):
-    # The first call may compile or allocate: it does not count.
+    # The first call may compile or allocate.
     function(*arguments[0])
     once = time_of(function, arguments, 1)
     if once > SLOW_CALL_SECONDS:

@@ -81,7 +81,7 @@ def by_pinocchio(robot, time, q):
 
 def measure(count=POINTS, rounds=ROUNDS):
     """
-    Measure.
+    Measure efforts and payload.
 
     Parameters
     ----------
@@ -97,23 +97,23 @@ def measure(count=POINTS, rounds=ROUNDS):
     Raises
     ------
     RuntimeError
-        If Pinocchio's efforts are not ours.
+        If Pinocchio's efforts differ.
 
     """
     robot = arm7()
     robot.model.specialize()
     time, q, qd, qdd = motion(robot, count)
     effort = robot.model.trajectory_effort
-    ours = 'efforts, from positions alone'
+    reference = 'efforts, from positions alone'
     ways = {
-        ours: lambda: effort(time, q),
+        reference: lambda: effort(time, q),
         'efforts, accelerations missing': lambda: effort(time, q, qd),
         'efforts, nothing missing': lambda: effort(time, q, qd, qdd),
         'largest payload': lambda: robot.model.max_payload(q, 'tool_center', qd=qd, qdd=qdd),
         'scipy and Pinocchio: efforts, from positions alone': by_pinocchio(robot, time, q),
     }
-    expected, theirs = effort(time, q), list(ways.values())[-1]()
-    error = np.abs(theirs - expected).max() / np.abs(expected).max()
+    expected, other = effort(time, q), list(ways.values())[-1]()
+    error = np.abs(other - expected).max() / np.abs(expected).max()
     if not error <= TOLERANCE:
         raise RuntimeError(
             f'efforts of Pinocchio: expected a difference of at most {TOLERANCE:g} '
@@ -122,11 +122,11 @@ def measure(count=POINTS, rounds=ROUNDS):
     samples = interleaved(
         {name: (way, [()]) for name, way in ways.items()}, rounds, slow_rounds=rounds
     )
-    return [_row(name, count, seconds, samples[ours]) for name, seconds in samples.items()]
+    return [_row(name, count, seconds, samples[reference]) for name, seconds in samples.items()]
 
 
-def _row(name, count, seconds, ours):
-    ratio = ratio_of(seconds, ours)
+def _row(name, count, seconds, reference):
+    ratio = ratio_of(seconds, reference)
     return {
         'what': name,
         f'{count} points': time_text(spread_of(seconds).median),

@@ -1,5 +1,5 @@
 """
-Robot dynamics from a URDF: mass matrix, Coriolis matrix, gravity torque and what follows.
+Robot dynamics from a URDF: mass matrix, Coriolis matrix, gravity torque and derived quantities.
 
 Needs no ROS.
 
@@ -9,7 +9,7 @@ Needs no ROS.
 
 """
 
-from typing import TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
 
 from .errors import (
     ArgumentError,
@@ -19,6 +19,7 @@ from .errors import (
     SingularMassMatrixError,
 )
 
+# For editors and type checkers; at run time `__getattr__` does it.
 if TYPE_CHECKING:
     from .dynamics import (
         complete_trajectory,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
         Trajectory,
     )
 
-__version__ = '0.1.0'
+__version__ = '0.2.0'
 
 __all__ = [
     'ArgumentError',
@@ -55,10 +56,14 @@ __all__ = [
 ]
 
 
-def __getattr__(name):
-    # Loaded on first use: numba takes a second, and not everything in here needs it.
+def __getattr__(name: str) -> Any:
+    # Loaded on first use: importing numba takes a second, and some modules do without it.
     if name in __all__:
         from . import dynamics
 
         return getattr(dynamics, name)
     raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

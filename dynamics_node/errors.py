@@ -1,21 +1,25 @@
-"""The exceptions of this package: one tree, each carrying its data; how they show a text."""
+"""The exceptions of this package, in one tree, and helpers for their messages."""
 
+from collections.abc import Collection, Iterable
 import difflib
 
-_SHOWN = 60
-# Comparing takes long for names that no robot has.
-_LONGEST_COMPARED, _MOST_COMPARED = 100, 1000
-# How like a name must be to be proposed, of 1.
-_LIKENESS = 0.7
+# Longest quoted text, characters.
+_MAX_QUOTED = 60
+# Longest name that is compared with known names, characters: longer ones take too long.
+_MAX_COMPARED_LENGTH = 100
+# Largest number of known names to compare with.
+_MAX_COMPARED_NAMES = 1000
+# Smallest similarity of a suggested name, from 0 to 1.
+_MIN_SIMILARITY = 0.7
 
 
 class DynamicsError(Exception):
-    """Base of every error that this package raises on purpose."""
+    """Base class of every error that this package raises on purpose."""
 
 
 class RobotDescriptionError(DynamicsError, ValueError):
     """
-    A robot description cannot be used; every problem found is listed.
+    A robot description cannot be used; the message lists every problem.
 
     Attributes
     ----------
@@ -24,7 +28,7 @@ class RobotDescriptionError(DynamicsError, ValueError):
 
     """
 
-    def __init__(self, problems):
+    def __init__(self, problems: Iterable[str]) -> None:
         self.problems = tuple(problems)
         count = len(self.problems)
         head = f'the robot description has {count} problem{"s" if count > 1 else ""}'
@@ -37,7 +41,7 @@ class ArgumentError(DynamicsError, ValueError):
 
 class InertiaError(DynamicsError, ValueError):
     """
-    Inertial parameters belong to no real body.
+    Inertial parameters are physically impossible.
 
     Attributes
     ----------
@@ -46,7 +50,7 @@ class InertiaError(DynamicsError, ValueError):
 
     """
 
-    def __init__(self, violations):
+    def __init__(self, violations: Iterable[str]) -> None:
         self.violations = tuple(violations)
         super().__init__('inertia is not physical: ' + '; '.join(self.violations))
 
@@ -55,9 +59,36 @@ class SingularMassMatrixError(DynamicsError, ArithmeticError):
     """The mass matrix is not positive definite, so accelerations are not defined."""
 
 
-def quoted(text):
+class ParameterError(DynamicsError, ValueError):
+    """A parameter value is refused: name, expected, got."""
+
+
+class InvalidEffortError(DynamicsError):
+    """An effort is not finite or has not one value per joint; it is never published."""
+
+
+class RejectedStateError(DynamicsError):
     """
-    Return a text from outside as it may stand in an error message or a log.
+    A joint state message was dropped.
+
+    Attributes
+    ----------
+    kind : str
+        Short and constant, for counting.
+    is_fault : bool
+        Whether the arm must not be driven any further.
+
+    """
+
+    def __init__(self, kind: str, message: str, is_fault: bool = False) -> None:
+        self.kind = kind
+        self.is_fault = is_fault
+        super().__init__(message)
+
+
+def quoted(text: str | None) -> str:
+    """
+    Return an untrusted text in a form that is safe in an error message or a log.
 
     Parameters
     ----------
@@ -66,23 +97,23 @@ def quoted(text):
     Returns
     -------
     str
-        In quotes; line breaks and what cannot be printed as escapes, shortened if it is long.
+        In quotes; line breaks and unprintable characters as escapes; at most 60 characters.
 
     """
     text = str(text)
-    return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + '...')
+    return repr(text if len(text) <= _MAX_QUOTED else text[: _MAX_QUOTED - 3] + '...')
 
 
-def suggestion(name, names):
+def suggestion(name: str, names: Collection[str]) -> str:
     """
-    Return which name was probably meant, to append to the sentence that refuses another one.
+    Return a similar known name, to append to the sentence that refuses an unknown one.
 
     Parameters
     ----------
     name : str
         The unknown name.
     names : collection of str
-        The known ones.
+        The known names.
 
     Returns
     -------
@@ -90,7 +121,7 @@ def suggestion(name, names):
         ", is 'elbow' meant?"; '' if none is similar.
 
     """
-    if len(name) > _LONGEST_COMPARED or len(names) > _MOST_COMPARED:
+    if len(name) > _MAX_COMPARED_LENGTH or len(names) > _MAX_COMPARED_NAMES:
         return ''
-    similar = difflib.get_close_matches(name, names, n=1, cutoff=_LIKENESS)
+    similar = difflib.get_close_matches(name, names, n=1, cutoff=_MIN_SIMILARITY)
     return f', is {quoted(similar[0])} meant?' if similar else ''

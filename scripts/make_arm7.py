@@ -2,11 +2,11 @@
 """
 Write config/robots/arm7.urdf, the 7-joint arm of the demo and the tests.
 
-Every inertial is computed from homogeneous bodies of stated size and density (`Part`), so the file
-holds no number that nobody can derive. Run it after a change here:
+Every inertial is computed from homogeneous bodies of stated size and density (`Part`). After a
+change here:
 
     python3 scripts/make_arm7.py            # rewrite the file
-    python3 scripts/make_arm7.py --check    # only compare, exit code 1 if it differs
+    python3 scripts/make_arm7.py --check    # only compare; exit code 1 if the file differs
 
 """
 
@@ -68,7 +68,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Link:
-    """A rigid link: a name and its parts (none for a mere frame)."""
+    """A rigid link: a name and its parts; a frame has none."""
 
     name: str
     parts: tuple[Part, ...]
@@ -290,11 +290,11 @@ def link_inertial(parts: tuple[Part, ...]) -> tuple[float, np.ndarray, np.ndarra
 
 
 def principal_axes(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the tensor in its principal axes (3, 3) and their rpy [rad], the nearest ones."""
+    """Return the tensor in its principal axes (3, 3), and the smallest rpy [rad] of these axes."""
     if np.abs(inertia - np.diag(np.diag(inertia))).max() < 1e-9 * np.trace(inertia):
         return np.diag(np.diag(inertia)), np.zeros(3)
     _, axes = np.linalg.eigh(inertia)
-    # Each principal axis takes the place of the link axis that it is closest to: small angles.
+    # Each principal axis replaces the nearest link axis: small angles.
     axes = axes[:, np.argmax(np.abs(axes), axis=1)]
     axes = axes * np.sign(np.diag(axes))
     return axes.T @ inertia @ axes, roll_pitch_yaw(axes)
@@ -311,7 +311,7 @@ def numbers(values) -> str:
 
 
 def describe(part: Part) -> str:
-    """Return one line about a part for the comment in its link."""
+    """Return the line of a part in the comment of its link."""
     density = f'{part.density:.0f} kg/m^3'
     if part.shape == 'box':
         return f'box {numbers(part.size)} m, {density}: {part_mass(part):.3f} kg'
@@ -321,7 +321,7 @@ def describe(part: Part) -> str:
 
 
 def add_inertial(element: ET.Element, parts: tuple[Part, ...]) -> None:
-    """Add the <inertial> of a link and the comment that says what it is made of."""
+    """Add the <inertial> of a link, and a comment with its parts."""
     mass, com, inertia = link_inertial(parts)
     moments, rpy = principal_axes(inertia)
     element.append(ET.Comment('\n      '.join(['', *map(describe, parts)]) + '\n    '))
@@ -384,7 +384,7 @@ def arm7_urdf() -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Write the file, or with --check say whether it is up to date."""
+    """Write the file, or with --check compare it."""
     parser = argparse.ArgumentParser(description=__doc__.strip().splitlines()[0])
     parser.add_argument('--check', action='store_true', help='write nothing, compare')
     check = parser.parse_args(arguments).check

@@ -8,7 +8,8 @@ report       docs/report_page.png: the page of the model report of an arm with a
 benchmarks   docs/benchmarks_short.png: from docs/benchmarks.md, measures nothing
 
 Give names to draw only some. The first needs offscreen OpenGL: libegl1, or libosmesa6 and
-MUJOCO_GL=osmesa. The report needs chromium. The demo itself draws its own figure without.
+MUJOCO_GL=osmesa. The report needs chromium and chromium-driver. The demo itself draws its own
+figure without.
 
 """
 
@@ -46,7 +47,7 @@ def workspace():
     from pictures import workspace
 
     robot = RobotModel.from_urdf(ARM7)
-    robot.specialize(loads=True)
+    robot.specialize(with_payload_code=True)
     workspace.draw(robot, DOCS / 'workspace.png')
 
 

@@ -2,8 +2,8 @@
 """
 Write a PlotJuggler layout for a robot: gravity and external torque of every joint.
 
-config/plotjuggler.xml is what it writes for config/robots/arm7.urdf. For another robot, and for
-one in a namespace, in `make shell`:
+Without arguments it writes config/plotjuggler.xml for config/robots/arm7.urdf. For another robot
+or a namespace, in `make shell`:
 
     python scripts/make_plotjuggler.py my_arm.urdf my_arm.xml
     python scripts/make_plotjuggler.py my_arm.urdf left.xml --namespace left
@@ -24,8 +24,8 @@ from dynamics_node import DynamicsError, RobotModel  # noqa: E402
 ARM7 = ROOT / 'config' / 'robots' / 'arm7.urdf'
 OUTPUT = ROOT / 'config' / 'plotjuggler.xml'
 STREAMER = 'ROS2 Topic Subscriber'
-# Of lines, in turn; what belongs together has the same place in the list.
-COLOURS = ('#1f77b4', '#d62728', '#1ac938', '#ff7f0e', '#f14cc1', '#9467bd', '#17becf', '#bcbd22')
+# Colors of lines, used in turn.
+COLORS = ('#1f77b4', '#d62728', '#1ac938', '#ff7f0e', '#f14cc1', '#9467bd', '#17becf', '#bcbd22')
 COMMENT = """
   PlotJuggler 3: gravity torque and external torque of every joint. Written by
   scripts/make_plotjuggler.py, which also writes one for another robot or namespace.
@@ -35,11 +35,11 @@ COMMENT = """
 
 
 def main(arguments=None):
-    """Write the layout that the command line asks for; return the exit code."""
+    """Write a layout; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.strip().splitlines()[0])
     parser.add_argument('urdf', nargs='?', default=ARM7, help='robot; default: arm7')
     parser.add_argument('output', nargs='?', default=OUTPUT, help='file to write')
-    parser.add_argument('--namespace', default='', help='that of the node')
+    parser.add_argument('--namespace', default='', help='namespace of the node')
     options = parser.parse_args(arguments)
     try:
         names = RobotModel.from_urdf(options.urdf).joint_names
@@ -60,12 +60,12 @@ def layout(names, namespace=''):
     names : sequence of str
         Joints of the node.
     namespace : str
-        Of the node.
+        Namespace of the node.
 
     Returns
     -------
     str
-        XML as PlotJuggler 3 saves it.
+        XML in the format of PlotJuggler 3.
 
     """
     node = '/'.join(['', *filter(None, namespace.split('/')), 'dynamics_node'])
@@ -80,7 +80,7 @@ def layout(names, namespace=''):
             (
                 topic.rpartition('/')[2].replace('_', ' '),
                 [_curve(topic, name) for name in names],
-                COLOURS,
+                COLORS,
             )
             for topic in topics
         ],
@@ -88,7 +88,7 @@ def layout(names, namespace=''):
     _tab(
         window,
         'joint by joint',
-        [(name, [_curve(topic, name) for topic in topics], COLOURS) for name in names],
+        [(name, [_curve(topic, name) for topic in topics], COLORS) for name in names],
     )
     ET.SubElement(window, 'currentTabIndex', index='0')
     ET.SubElement(root, 'use_relative_time_offset', enabled='1')
@@ -99,7 +99,7 @@ def layout(names, namespace=''):
 
 
 def _curve(topic, joint):
-    # As PlotJuggler names the efforts of a sensor_msgs/JointState.
+    # PlotJuggler's name of an effort of a sensor_msgs/JointState.
     return f'{topic}/{joint}/effort'
 
 
@@ -109,7 +109,7 @@ def _tab(window, name, plots):
     columns = [plots] if len(plots) <= 4 else [plots[::2], plots[1::2]]
     across = _splitter(container, '|', len(columns))
     for column in columns:
-        # With one child each PlotJuggler has areas directly in the outer one.
+        # PlotJuggler puts a single area directly into the outer splitter.
         parent = across if len(column) == 1 else _splitter(across, '-', len(column))
         for title, curves, colors in column:
             _plot(parent, title, curves, colors)

@@ -1,4 +1,4 @@
-"""docs/accuracy.md says what the sweep finds."""
+"""docs/accuracy.md agrees with current measurements."""
 
 import pytest
 from support.accuracy_document import PATH, render
@@ -11,12 +11,14 @@ def measured():
 
 
 @pytest.mark.timeout(300)
-def test_the_document_is_still_true(measured):
-    found = misfits(PATH.read_text(encoding='utf-8'), measured)
-    assert not found, '\n'.join([*found, 'look why, then run scripts/write_accuracy.py'])
+def test_the_document_is_true(measured):
+    differences = misfits(PATH.read_text(encoding='utf-8'), measured)
+    assert not differences, '\n'.join(
+        [*differences, 'look why, then run scripts/write_accuracy.py']
+    )
 
 
-def test_a_robot_a_reason_or_a_worse_figure_would_be_seen(measured):
+def test_a_missing_robot_another_reason_and_a_worse_figure_are_detected(measured):
     lines = measured.splitlines()
     robot = next(number for number, line in enumerate(lines) if line.startswith('| ur5_robot'))
     reason = next(number for number, line in enumerate(lines) if 'it has no <link>' in line)

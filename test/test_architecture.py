@@ -1,14 +1,14 @@
-"""The one-way street: errors, inertia → urdf → model → kernels → dynamics → ros; and the walls."""
+"""Imports between the folders of the package go one way: see STREET and WALLS."""
 
 import ast
 from pathlib import Path
-import subprocess
 import sys
 
 import pytest
+from support.python_process import run_python
 
 PACKAGE = Path(__file__).parents[1] / 'dynamics_node'
-# Room → rooms of this package that it may import.
+# Folder or module → those of this package that it may import.
 STREET = {
     'errors': set(),
     'inertia': {'errors'},
@@ -25,7 +25,7 @@ STREET = {
 }
 # llvmlite is numba's compiler and comes with it.
 LIBRARY = {'numpy', 'numba', 'llvmlite', 'yourdfpy', 'scipy'}
-# Folders of `ros/` → those that they may import; only main.py and node.py know all of them.
+# Folders of `ros/` → those that they may import; only main.py and node.py import all of them.
 WALLS = {
     'support': set(),
     'parameters': {'support'},
@@ -35,13 +35,17 @@ WALLS = {
     'effort_guard': {'support', 'parameters'},
 }
 WITH_ROS = ('ros/', 'visualization/markers/', 'demo/')
-# Only for these files of the report, which says how to install them where they are missing.
-SHOWING = {'report/terminal': ['rich'], 'report/progress': ['rich'], 'report/html': ['plotly']}
+# Optional packages of the report, which explains how to install them.
+OPTIONAL = {
+    'report/terminal': {'rich'},
+    'report/__main__': {'rich'},
+    'report/html': {'plotly', 'jinja2', 'markupsafe'},
+}
 SOURCES = sorted(PACKAGE.rglob('*.py'))
 
 
 def room_of(path):
-    """Return the room a file is in."""
+    """Return the folder or module of a file."""
     return path.relative_to(PACKAGE).parts[0].removesuffix('.py')
 
 
@@ -58,7 +62,7 @@ def imported(path):
 
 
 def own_rooms(path):
-    """Return the rooms of this package that a file imports."""
+    """Return the folders of this package that a file imports."""
     here = path.relative_to(PACKAGE).parent.parts
     for level, name in imported(path):
         if level == 0:
@@ -69,7 +73,7 @@ def own_rooms(path):
 
 
 @pytest.mark.parametrize('path', SOURCES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_every_file_imports_only_what_its_room_may(path):
+def test_a_file_imports_only_allowed_folders(path):
     room = room_of(path)
     if room == '__init__':
         return
@@ -77,18 +81,18 @@ def test_every_file_imports_only_what_its_room_may(path):
         assert other == room or other in STREET[room], f'{path}: imports {other}'
     if not path.relative_to(PACKAGE).as_posix().startswith(WITH_ROS):
         outside = {name.split('.')[0] for level, name in imported(path) if level == 0}
-        shown = {
+        optional = {
             name
-            for start, names in SHOWING.items()
-            for name in names
+            for start, names in OPTIONAL.items()
             if path.relative_to(PACKAGE).as_posix().startswith(start)
+            for name in names
         }
-        unknown = outside - LIBRARY - shown - set(sys.stdlib_module_names)
+        unknown = outside - LIBRARY - optional - set(sys.stdlib_module_names)
         assert not unknown, f'{path}: imports {unknown}'
 
 
 @pytest.mark.parametrize('wall', WALLS)
-def test_the_rooms_of_the_node_keep_their_walls(wall):
+def test_folders_of_the_node_import_only_allowed_folders(wall):
     for path in (PACKAGE / 'ros' / wall).glob('*.py'):
         for level, name in imported(path):
             other = name.split('.')[0]
@@ -110,20 +114,6 @@ def test_the_library_works_where_no_ros_is_installed():
         'print(robot.gravity_torque([0.0]))\n'
         'assert not any(name.startswith("rclpy") for name in sys.modules)\n'
     )
-    run = subprocess.run(
-        [sys.executable, '-c', code],
-        capture_output=True,
-        text=True,
-        cwd=PACKAGE.parent,
-        check=False,
-    )
+    run = run_python('-c', code, cwd=PACKAGE.parent)
     assert run.returncode == 0, run.stderr
     assert run.stdout.startswith('[10.3')
-
-
-def test_every_room_says_what_it_is_and_what_may_change_there():
-    for path in PACKAGE.rglob('__init__.py'):
-        doc = ast.get_docstring(ast.parse(path.read_text()))
-        assert doc, path
-        if path.parent != PACKAGE:
-            assert 'What may change here' in doc, path

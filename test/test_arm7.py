@@ -1,4 +1,4 @@
-"""config/robots/arm7.urdf is what its generator writes, physical, and able to hold itself."""
+"""config/robots/arm7.urdf: written by its generator, physical, able to hold itself."""
 
 import importlib.util
 from pathlib import Path
@@ -56,14 +56,12 @@ def inertials(robot):
 
 
 def test_the_file_is_exactly_what_the_generator_writes(generator):
-    """Nobody has edited it by hand."""
     assert ARM7.read_text(encoding='utf-8') == generator.arm7_urdf(), (
         'config/robots/arm7.urdf differs from its generator: run python3 scripts/make_arm7.py'
     )
 
 
 def test_every_inertial_belongs_to_a_possible_body(robot):
-    """Mass and principal moments are positive and fulfill the triangle inequality."""
     for name, mass, _, tensor in inertials(robot):
         moments = np.linalg.eigvalsh(tensor)
         assert mass > 0 and moments[0] > 0, name
@@ -71,7 +69,6 @@ def test_every_inertial_belongs_to_a_possible_body(robot):
 
 
 def test_every_inertial_is_that_of_its_parts_filled_with_points(generator, robot):
-    """A second route to mass, com and inertia: a cloud of points in every part."""
     parts = {link.name: link.parts for link in generator.LINKS}
     for name, mass, com, tensor in inertials(robot):
         points, weights = point_cloud(generator, parts[name])
@@ -106,7 +103,6 @@ def grid(part, side):
 
 
 def test_it_can_hold_itself_anywhere(model):
-    """The worst gravity torque of every joint stays below 70 % of its effort limit."""
     data, rng = model.createData(), np.random.default_rng(1)
     worst = np.zeros(model.nv)
     for _ in range(10_000):
@@ -114,11 +110,10 @@ def test_it_can_hold_itself_anywhere(model):
         torque = pinocchio.computeGeneralizedGravity(model, data, q)
         worst = np.maximum(worst, np.abs(torque))
     assert np.all(worst < 0.7 * model.upperEffortLimit)
-    assert worst[model.joints[model.getJointId('shoulder_pitch')].idx_v] > 30.0  # and it is heavy
+    assert worst[model.joints[model.getJointId('shoulder_pitch')].idx_v] > 30.0
 
 
 def test_size_and_mass_are_those_of_a_research_arm(model):
-    """About 0.85 m from shoulder to flange, 18 to 20 kg."""
     data = model.createData()
     pinocchio.framesForwardKinematics(model, data, pinocchio.neutral(model))
     shoulder, hand = (
@@ -128,8 +123,7 @@ def test_size_and_mass_are_those_of_a_research_arm(model):
     assert 18.0 < sum(inertia.mass for inertia in model.inertias) < 20.0
 
 
-def test_it_has_the_cases_that_a_reader_of_urdf_must_know(robot):
-    """An inertial that is turned, fixed links inside and at the end, a mimic joint, no mesh."""
+def test_it_exercises_a_reader_of_urdf(robot):
     assert any(origin.get('rpy') != '0 0 0' for origin in robot.findall('link/inertial/origin'))
     fixed = {
         joint.find('child').get('link')
@@ -143,7 +137,6 @@ def test_it_has_the_cases_that_a_reader_of_urdf_must_know(robot):
 
 
 def test_nothing_but_viscous_friction_slows_it_down(robot):
-    """Coulomb friction would help the demo to stand still."""
     dynamics = robot.findall('joint/dynamics')
     assert len(dynamics) == 9
     assert all(float(d.get('damping')) > 0 and float(d.get('friction')) == 0 for d in dynamics)

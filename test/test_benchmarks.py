@@ -1,4 +1,4 @@
-"""The benchmarks: a tiny round of the real thing, and the report is rendered from it alone."""
+"""The benchmarks: a short run, and the report rendered from its results alone."""
 
 from copy import deepcopy
 import gc
@@ -41,7 +41,7 @@ MODULES = (
 
 @pytest.fixture(scope='module')
 def bench():
-    # Only for the import: the root holds folders, such as launch, that must not hide packages.
+    # Only for the import: folders of the root, such as launch, would hide packages.
     sys.path.insert(0, str(ROOT))
     try:
         return SimpleNamespace(
@@ -87,7 +87,7 @@ def test_every_library_is_measured_for_every_quantity_on_every_arm(results):
     }
     assert results.refused == [] and results.missing == {}
     for row in results.single:
-        assert len(row.seconds) == len(row.ours) == 2 and min(row.seconds) > 0.0
+        assert len(row.seconds) == len(row.reference) == 2 and min(row.seconds) > 0.0
         assert row.error < 1e-10
 
 
@@ -120,12 +120,12 @@ def test_no_measured_number_is_typed_in(bench, results):
     # Other times must change every cell that is not a name, a number of joints or our own 1.
     changed = deepcopy(results)
     rng = np.random.default_rng(0)
-    for row in (*changed.single, *changed.batch, *changed.growth):
+    for row in (*changed.single, *changed.batch, *changed.scaling):
         row.seconds[:] = [value * rng.uniform(2.0, 3.0) for value in row.seconds]
-    for row in (*changed.single, *changed.growth):
-        row.ours[:] = [value * rng.uniform(5.0, 6.0) for value in row.ours]
+    for row in (*changed.single, *changed.scaling):
+        row.reference[:] = [value * rng.uniform(5.0, 6.0) for value in row.reference]
     for row in changed.batch:
-        for values in row.ours.values():
+        for values in row.reference.values():
             values[:] = [value * rng.uniform(5.0, 6.0) for value in values]
         row.cores_used[:] = [value * 1.5 for value in row.cores_used]
     changed.memory = {
@@ -166,8 +166,10 @@ def test_a_library_with_other_numbers_is_refused_and_not_timed(bench):
         return (honest.run(q)[0] * (1.0 + 1e-7),)
 
     call = type(honest)(wrong, ('G',), 'wrong')
-    rival = SimpleNamespace(NAME='wrong', calls=lambda robot: {'gravity': call})
-    rows, refused = bench.single_call.measure([robot], {'wrong': rival}, 1, lambda text: None)
+    wrong_library = SimpleNamespace(NAME='wrong', calls=lambda robot: {'gravity': call})
+    rows, refused = bench.single_call.measure(
+        [robot], {'wrong': wrong_library}, 1, lambda text: None
+    )
     assert {row.library for row in rows} == {'dynamics_node'}
     [sentence] = refused
     assert re.fullmatch(
@@ -194,7 +196,7 @@ def test_a_library_that_is_not_installed_is_named_with_the_reason(bench, monkeyp
     assert loaded == {} and 'pydrake' in missing['drake']
 
 
-def test_other_files_measure_their_sections(bench, monkeypatch, tmp_path):
+def test_sections_of_other_files(bench, monkeypatch, tmp_path):
     (tmp_path / 'good_section.py').write_text(
         '"""How it was measured."""\n\n\ndef measure():\n'
         '    return [{"what": "round trip", "ms": 0.51234}]\n'
@@ -204,7 +206,7 @@ def test_other_files_measure_their_sections(bench, monkeypatch, tmp_path):
     monkeypatch.setattr(package, '__path__', [*package.__path__, str(tmp_path)])
     monkeypatch.setattr(
         bench.external_sections,
-        'PLACES',
+        'SECTIONS',
         {
             'good': ('Good', 'good_section'),
             'bad': ('Bad', 'bad_section'),
@@ -224,18 +226,20 @@ def test_other_files_measure_their_sections(bench, monkeypatch, tmp_path):
         monkeypatch.delitem(sys.modules, f'benchmarks.{name}')
 
 
-def test_a_section_that_is_measured_alone_takes_the_place_of_the_old_one(bench):
+def test_a_section_measured_alone_replaces_the_old_one(bench):
     report = '# Benchmarks\n\n## The node\n\nold\n\n| a |\n|---|\n| 1 |\n\n## How\n\ntext\n'
     section = bench.external_sections.Section(
         'The node', r'new \1', [{'what': 'p50', 'ratio': '1.1'}]
     )
-    new = bench.external_sections.put(report, section, {'CPU': 'a processor', 'Python': '3.12'})
+    new = bench.external_sections.replace(
+        report, section, {'CPU': 'a processor', 'Python': '3.12'}
+    )
     assert new.startswith('# Benchmarks\n\n## The node\n\nnew \\1\n\n')
     assert new.endswith('\n\n## How\n\ntext\n')
     assert 'CPU a processor; Python 3.12.' in new
     assert '| p50 | 1.1 |' in new and 'old' not in new
     with pytest.raises(ValueError, match='expected a section "Other"'):
-        bench.external_sections.put(report, bench.external_sections.Section('Other', ''), {})
+        bench.external_sections.replace(report, bench.external_sections.Section('Other', ''), {})
 
 
 def test_ratios_are_those_of_the_same_round(bench):
@@ -256,7 +260,7 @@ def test_rounds_are_interleaved_and_begin_with_another_candidate(bench, monkeypa
     assert samples == {'a': [1.0] * 3, 'b': [1.0] * 3}
 
 
-def test_a_slow_library_is_divided_by_ours_of_the_same_rounds(bench, monkeypatch):
+def test_a_slow_library_is_compared_in_the_same_rounds(bench, monkeypatch):
     # Our 7 rounds are 3 + 2 + 2; a slow one takes part in the first 2 of each pass.
     turns = iter((3, 2, 2))
     clock = iter(range(7))
@@ -274,7 +278,7 @@ def test_a_slow_library_is_divided_by_ours_of_the_same_rounds(bench, monkeypatch
         [bench.robots.arm7()], {'pinocchio': bench.pinocchio}, 7, say=lambda text: None
     )
     assert [row.seconds for row in rows] == [[0, 1, 2, 3, 4, 5, 6], [0, 1, 3, 4, 5, 6]]
-    assert rows[1].ours == rows[1].seconds
+    assert rows[1].reference == rows[1].seconds
 
 
 def test_the_collector_is_off_while_the_clock_runs(bench):
@@ -286,7 +290,7 @@ def test_the_collector_is_off_while_the_clock_runs(bench):
 def test_the_exponent_is_the_slope_of_a_power_law(bench):
     # Rounds of different speed, the last one disturbed: the median is that of the power law.
     rows = [
-        bench.scaling.GrowthRow(
+        bench.scaling.ScalingRow(
             'chain', joints, 'x', [1e-6 * joints**1.5, 3e-6 * joints**1.5, 1e-6 * joints**2.5], []
         )
         for joints in (2, 4, 8, 16)

@@ -15,6 +15,7 @@ ROOT = Path(__file__).parents[1]
         ('ruff', 'check', '.'),
         ('ruff', 'format', '--check', '.'),
         ('mypy', 'dynamics_node', 'benchmarks'),
+        ('codespell_lib',),
     ],
     ids=lambda command: ' '.join(command[:2]),
 )

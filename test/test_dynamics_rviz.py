@@ -1,4 +1,4 @@
-"""config/dynamics.rviz: displays that RViz has, topics that the node has, and what is in docs."""
+"""config/dynamics.rviz: displays of RViz, topics of the node, name spaces of the document."""
 
 from pathlib import Path
 import re
@@ -16,19 +16,19 @@ MANAGER = CONFIG['Visualization Manager']
 DISPLAYS = {display['Name']: display for display in MANAGER['Displays']}
 DOCUMENT = (ROOT / 'docs' / 'rviz.md').read_text()
 # As the plugins of RViz for ROS 2 (Jazzy) are registered, and as its properties are spelled.
+PLUGINS = (
+    'Grid',
+    'RobotModel',
+    'MarkerArray',
+    'TF',
+    'Orbit',
+    'Interact',
+    'MoveCamera',
+    'FocusCamera',
+    'Measure',
+)
 CLASSES = {'rviz_common/Displays', 'rviz_common/Views'} | {
-    f'rviz_default_plugins/{name}'
-    for name in (
-        'Grid',
-        'RobotModel',
-        'MarkerArray',
-        'TF',
-        'Orbit',
-        'Interact',
-        'MoveCamera',
-        'FocusCamera',
-        'Measure',
-    )
+    f'rviz_default_plugins/{name}' for name in PLUGINS
 }
 QOS = {
     'Durability Policy': {'System Default', 'Transient Local', 'Volatile'},
@@ -38,17 +38,17 @@ QOS = {
 
 
 def every(node, key):
-    """Return all values of a key, however deep."""
-    if isinstance(node, dict):
-        found = [node[key]] if key in node else []
-        return found + [value for child in node.values() for value in every(child, key)]
-    return (
-        [value for child in node for value in every(child, key)] if isinstance(node, list) else []
-    )
+    """Return all values of a key, at any depth."""
+    if isinstance(node, list):
+        return [value for child in node for value in every(child, key)]
+    if not isinstance(node, dict):
+        return []
+    own = [node[key]] if key in node else []
+    return own + every(list(node.values()), key)
 
 
 def groups():
-    """Return the groups of a picture in which nothing is missing."""
+    """Return the groups of a complete picture."""
     robot = RobotModel.from_urdf(
         re.sub(r'ixx="[^"]*"', 'ixx="9"', ARM7.read_text(), count=3)
     ).with_payload('hand', 1.0)
@@ -80,22 +80,22 @@ def test_topics_and_their_quality_of_service(display, key, topic):
     assert settings['Reliability Policy'] == 'Reliable'
     latched = settings['Durability Policy'] == 'Transient Local'
     assert latched == (topic == '/robot_description')
-    code = (ROOT / 'dynamics_node' / 'visualization' / 'markers' / 'node.py').read_text()
+    code = (ROOT / 'dynamics_node/visualization/markers/node.py').read_text()
     assert re.search(r"declare_parameter\(\s*'dynamics_node',\s*'dynamics_node'", code)
     assert "f'{self._followed.name}/markers'" in code
 
 
-def test_it_begins_with_what_the_demo_shows():
+def test_its_first_view_is_that_of_the_demo():
     assert MANAGER['Global Options']['Fixed Frame'] == RobotModel.from_urdf(ARM7).tree.root
     assert DISPLAYS['Dynamics']['Enabled'] and DISPLAYS['Robot']['Enabled']
     assert not DISPLAYS['TF']['Enabled']
-    assert DISPLAYS['Robot']['Alpha'] < 0.5  # or nobody sees what is inside
+    assert DISPLAYS['Robot']['Alpha'] < 0.5  # transparent: the masses are inside
 
 
 def test_every_name_space_can_be_switched_and_is_in_the_document():
-    shown = groups()
-    assert set(DISPLAYS['Dynamics']['Namespaces']) == shown
-    assert set(re.findall(r'^\| `(\w+)` \|', DOCUMENT, re.M)) == shown
+    names = groups()
+    assert set(DISPLAYS['Dynamics']['Namespaces']) == names
+    assert set(re.findall(r'^\| `(\w+)` \|', DOCUMENT, re.M)) == names
 
 
 def test_it_is_installed():

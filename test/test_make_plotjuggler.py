@@ -1,13 +1,12 @@
-"""config/plotjuggler.xml: what scripts/make_plotjuggler.py writes, and topics the node has."""
+"""config/plotjuggler.xml: written by its script, with topics of the node."""
 
 import importlib.util
 from pathlib import Path
-import subprocess
-import sys
 from xml.etree import ElementTree
 
 from dynamics_node import RobotModel
 import pytest
+from support.python_process import run_python
 from support.robots import ARM7, PENDULUM
 from support.sros2_policy import POLICY, read
 
@@ -83,12 +82,7 @@ def assert_splits(element):
 @pytest.mark.parametrize('namespace', ['left', '/left', '/left/'])
 def test_another_robot_in_a_namespace(tmp_path, namespace):
     output = tmp_path / 'layout.xml'
-    run = subprocess.run(
-        [sys.executable, SCRIPT, PENDULUM, output, '--namespace', namespace],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    run = run_python(SCRIPT, PENDULUM, output, '--namespace', namespace)
     assert run.returncode == 0, run.stderr
     assert set(curves(output.read_text())) == {
         f'/left/dynamics_node/{topic}/hinge/effort'
@@ -98,11 +92,6 @@ def test_another_robot_in_a_namespace(tmp_path, namespace):
 
 def test_what_is_no_robot_is_refused(tmp_path):
     output = tmp_path / 'layout.xml'
-    run = subprocess.run(
-        [sys.executable, SCRIPT, tmp_path / 'none.urdf', output],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    run = run_python(SCRIPT, tmp_path / 'none.urdf', output)
     assert run.returncode == 1 and run.stderr.startswith('make_plotjuggler: ')
     assert 'Traceback' not in run.stderr and not output.exists()

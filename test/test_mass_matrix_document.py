@@ -1,4 +1,4 @@
-"""docs/how_to/mass_matrix.md: its Python asks the real node, and so does its C++ where it can."""
+"""docs/how_to/mass_matrix.md: its Python and C++ clients with the real node."""
 
 import json
 import os
@@ -6,12 +6,12 @@ from pathlib import Path
 import re
 import shutil
 import subprocess
-import sys
 
 from dynamics_node import RobotModel
 import numpy as np
 import pytest
 from support.processes import Client, NodeProcess
+from support.python_process import run_python
 from support.robots import ARM7
 from test_readme import blocks
 
@@ -25,7 +25,7 @@ Q = [0.1, 0.2, -0.3, 0.4, -0.5, 0.6, 0.7, 0.02]
 
 @pytest.fixture
 def node():
-    """Return nothing; a node runs and is known meanwhile."""
+    """Run a node, and wait for its services."""
     process = NodeProcess(robot_description_file=ARM7)
     client = Client()
     try:
@@ -70,13 +70,7 @@ rclpy.shutdown()
 main()
 print(json.dumps([names, D.tolist(), refusal]))
 """
-    run = subprocess.run(
-        [sys.executable, '-c', ASK + use],
-        capture_output=True,
-        text=True,
-        timeout=60.0,
-        check=False,
-    )
+    run = run_python('-c', ASK + use, timeout=60.0)
     assert run.returncode == 0, run.stderr
     *printed, last = run.stdout.splitlines()
     names, D, refusal = json.loads(last)

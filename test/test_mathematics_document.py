@@ -1,4 +1,4 @@
-"""docs/mathematics.md: the worked example prints what stands below it, and that is the truth."""
+"""docs/mathematics.md: the worked example prints the stated values, and they are true."""
 
 from pathlib import Path
 import re

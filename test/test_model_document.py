@@ -1,4 +1,4 @@
-"""docs/model.md: its code runs, and means what it says."""
+"""docs/model.md: its code runs, with the stated meaning."""
 
 from pathlib import Path
 

@@ -11,6 +11,7 @@ KEYS = {
     'python3-scipy',
     'python3-yourdfpy-pip',
     'python3-matplotlib',
+    'python3-jinja2',
     'python3-rich',
     'python3-mujoco-pip',
     'python3-pytest',

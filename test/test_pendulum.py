@@ -10,7 +10,6 @@ from dynamics_node import RobotModel
 from dynamics_node.inertia import cylinder, pseudo_inertia_by_integration
 from dynamics_node.kernels import textbook
 from dynamics_node.urdf import read_urdf
-from dynamics_node.urdf.inertial import link_pseudo_inertia
 import numpy as np
 import pytest
 from support.robots import PENDULUM
@@ -37,7 +36,7 @@ def pendulum():
 
 def test_the_urdf_has_the_lectures_pseudo_inertia():
     rod = next(link for link in read_urdf(PENDULUM).links if link.name == 'rod')
-    np.testing.assert_allclose(link_pseudo_inertia(rod.inertial), LECTURE_J, rtol=0, atol=4 * EPS)
+    np.testing.assert_allclose(rod.inertial.pseudo_inertia, LECTURE_J, rtol=0, atol=4 * EPS)
 
 
 def test_the_recursive_of_the_cylinder_is_the_lectures_pseudo_inertia():

@@ -1,14 +1,14 @@
-"""The pictures of the documents: what they show is computed right, and who cannot draw says so."""
+"""The pictures of the documents: their numbers, and errors without OpenGL."""
 
 import os
 from pathlib import Path
-import subprocess
 import sys
 
 from dynamics_node import RobotModel
 import numpy as np
 from PIL import Image
 import pytest
+from support.python_process import run_python
 from support.robots import ARM7
 
 ROOT = Path(__file__).parents[1]
@@ -43,14 +43,7 @@ renderer.close()
 
 def render(**environment):
     """Render with other environment variables; returns the finished process."""
-    return subprocess.run(
-        [sys.executable, '-c', RENDER],
-        capture_output=True,
-        text=True,
-        env={**os.environ, **environment},
-        timeout=120.0,
-        check=False,
-    )
+    return run_python('-c', RENDER, env={**os.environ, **environment}, timeout=120.0)
 
 
 def test_the_arm_is_rendered():
@@ -60,16 +53,14 @@ def test_the_arm_is_rendered():
     assert run.returncode == 0, run.stderr
 
 
-def test_without_opengl_it_says_what_to_install():
+def test_without_opengl_the_error_names_the_package_to_install():
     run = render(MUJOCO_GL='disabled')
     assert run.returncode == 1
     assert 'install libegl1 (then MUJOCO_GL=egl) or libosmesa6' in run.stderr
 
 
 def test_an_unknown_name_is_refused():
-    run = subprocess.run(
-        [sys.executable, SCRIPT, 'landscape'], capture_output=True, text=True, check=False
-    )
+    run = run_python(SCRIPT, 'landscape')
     assert run.returncode == 1
     assert 'expected names out of floating, workspace, report, benchmarks, got landscape' in (
         run.stderr
@@ -78,7 +69,7 @@ def test_an_unknown_name_is_refused():
 
 @pytest.fixture(scope='module')
 def few():
-    """Return postures of a coarse grid, of which all cells are seen."""
+    """Return postures of a coarse grid, and the worst ones of its cells."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(workspace, 'STEPS', (41, 41, 9))
         patch.setattr(workspace, 'CELL', 0.1)

@@ -145,7 +145,8 @@ def test_every_interface_file_is_on_it_with_every_field():
 
 
 def test_every_program_that_is_installed_is_on_it():
-    installed = re.findall(r"'(\w+) = dynamics_node", (ROOT / 'setup.py').read_text())
+    (names,) = re.findall(r'^programs = \((.*)\)$', (ROOT / 'setup.py').read_text(), re.M)
+    installed = re.findall(r"'(\w+)'", names)
     assert {plain(cells[0]).split()[3] for cells in rows('Programs and launch files')} == set(
         installed
     )

@@ -1,9 +1,9 @@
-"""docs/report.md: its code runs, its commands work, its CI step is what it says."""
+"""docs/report.md: its code and its commands."""
 
 from pathlib import Path
 import re
 
-from dynamics_node.report.command_line import parse
+from dynamics_node.report.__main__ import parse
 import pytest
 from test_readme import blocks
 

@@ -1,4 +1,4 @@
-"""config/robots/*.yaml: written from the URDFs, taken by the real node, and honest."""
+"""config/robots/*.yaml: written from the URDFs, accepted by the node, with warnings."""
 
 from pathlib import Path
 import sys
@@ -38,7 +38,7 @@ def test_its_limits_hold_the_arm_and_are_never_above_the_urdfs(path):
     robot = RobotModel.from_urdf(urdf_path(ARMS[path.stem]))
     limits = np.array(parameters(path)['effort_limits'])
     assert np.all(limits <= np.nan_to_num(robot.effort_limits, nan=np.inf))
-    # Other positions than those from which the limits were made.
+    # Other positions than those of the generator.
     lower, upper = np.clip(robot.position_limits, -np.pi, np.pi).T
     q = np.random.default_rng(99).uniform(lower, upper, (5000, len(lower)))
     assert np.all(np.abs(robot.gravity_torque(q)).max(0) < limits)
@@ -46,7 +46,7 @@ def test_its_limits_hold_the_arm_and_are_never_above_the_urdfs(path):
 
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize('path', FILES, ids=lambda path: path.stem)
-def test_the_real_node_takes_it(path):
+def test_the_node_accepts_it(path):
     node = NodeProcess(parameters_file=path, robot_description_file=urdf_path(ARMS[path.stem]))
     client = Client()
     wanted = parameters(path)
@@ -63,7 +63,7 @@ def test_the_real_node_takes_it(path):
     assert list(answer.effort_limits) == wanted['effort_limits']
 
 
-def test_nobody_is_invited_to_enable_an_arm_that_compensates_gravity():
+def test_files_of_self_compensating_arms_warn_against_enabling():
     text = (ROOT / 'docs' / 'arms.md').read_text()
     floating = text.split('## Arms that compensate')[1].split('\n## ')[0]
     for maker in ('Franka', 'Universal Robots', 'Kinova Gen2'):

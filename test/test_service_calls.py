@@ -1,4 +1,4 @@
-"""Every `ros2 service call` of the documents: the service, its type, and fields that it has."""
+"""All `ros2 service call` commands of the documents: services, types and fields exist."""
 
 import importlib
 from pathlib import Path
@@ -24,7 +24,7 @@ def fill(message, values):
 
 
 @pytest.mark.parametrize(('document', 'service', 'kind', 'request_text'), CALLS)
-def test_it_is_one_that_the_node_understands(document, service, kind, request_text):
+def test_the_node_serves_it(document, service, kind, request_text):
     package, folder, name = kind.split('/')
     service_type = getattr(importlib.import_module(f'{package}.{folder}'), name)
     fill(service_type.Request(), yaml.safe_load(request_text.strip("'") or '{}'))
@@ -35,5 +35,5 @@ def test_it_is_one_that_the_node_understands(document, service, kind, request_te
 
 
 def test_all_calls_are_found():
-    said = sum(path.read_text().count('ros2 service call') for path in DOCUMENTS)
-    assert len(CALLS) == said > 5
+    count = sum(path.read_text().count('ros2 service call') for path in DOCUMENTS)
+    assert len(CALLS) == count > 5

@@ -1,8 +1,7 @@
-"""docs/trajectory.md: its code asks the real node over DDS, and its library code runs."""
+"""docs/trajectory.md: its client with the real node, its controller and library code."""
 
 import json
 from pathlib import Path
-import subprocess
 import sys
 from types import ModuleType, SimpleNamespace
 
@@ -10,6 +9,7 @@ from dynamics_node import RobotModel
 import numpy as np
 import pytest
 from support.processes import NodeProcess
+from support.python_process import run_python
 from support.robots import ARM7
 from test_readme import blocks
 
@@ -18,7 +18,7 @@ ASK, SEND, LIBRARY = blocks(ROOT / 'docs' / 'trajectory.md')
 ARM = RobotModel.from_urdf(ARM7)
 GOAL = [0.4, -0.3, 0.2, 0.5, -0.1, 0.3, 0.2]
 NAMES = list(ARM.joint_names[:7])
-# In a process of its own, as a user's: it calls rclpy.init.
+# A separate process: it calls rclpy.init.
 USE = f"""
 import json
 rclpy.init()
@@ -48,13 +48,7 @@ rclpy.shutdown()
 def answers():
     node = NodeProcess(robot_description_file=ARM7)
     try:
-        run = subprocess.run(
-            [sys.executable, '-c', ASK + USE],
-            capture_output=True,
-            text=True,
-            timeout=90.0,
-            check=False,
-        )
+        run = run_python('-c', ASK + USE, timeout=90.0)
     finally:
         node.close()
     assert run.returncode == 0, run.stderr
@@ -62,7 +56,7 @@ def answers():
 
 
 def whole(values):
-    """Return columns for the gripper too, which stands still."""
+    """Add columns of zeros for the gripper."""
     return np.concatenate((values, np.zeros((len(values), len(ARM.joint_names) - 7))), axis=1)
 
 

@@ -1,4 +1,4 @@
-"""docs/tutorial.md: all of it runs, in its order, and prints what it says."""
+"""docs/tutorial.md: all blocks run in order and print the stated output."""
 
 from pathlib import Path
 import sys

@@ -1,8 +1,8 @@
 """
-One file per library. Each has NAME, PACKAGE, NOTE and `calls(robot)`.
+One file per library, with NAME, PACKAGE, NOTE and `calls(robot)`.
 
-A file imports its library at the top; one that cannot be imported is reported as missing, with
-the reason, and the measurements go on without it.
+A file imports its library at the top. A library without which it cannot be imported is reported as
+missing, with the reason.
 
 """
 
@@ -36,7 +36,7 @@ def load(names=FILES):
     -------
     loaded : dict of str to module
     missing : dict of str to str
-        Name → why it could not be imported.
+        Name → reason of the failed import.
 
     """
     loaded, missing = {}, {}

@@ -1,4 +1,4 @@
-"""Drake: a continuous MultibodyPlant and one context, whose caches every new state empties."""
+"""Drake: a continuous MultibodyPlant and one context; a new state empties its caches."""
 
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
@@ -29,12 +29,12 @@ def plant_of(robot):
     Raises
     ------
     ValueError
-        If it counts the joints in another order.
+        If its order of joints differs.
 
     """
     plant = MultibodyPlant(0.0)
     Parser(plant).AddModelsFromString(robot.text, 'urdf')
-    # A link of the URDF with this name is Drake's world already.
+    # Drake identifies a link of this name with its world.
     if robot.model.tree.root != 'world':
         plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(robot.model.tree.root))
     plant.Finalize()
@@ -44,7 +44,7 @@ def plant_of(robot):
         key=lambda joint: joint.velocity_start(),
     )
     names = tuple(joint.name() for joint in moving)
-    robot.demand_order(names)
+    robot.check_joint_order(names)
     return plant
 
 

@@ -1,4 +1,4 @@
-"""This library, called as a user calls it: checks of the arguments included."""
+"""This library through its public methods, which check their arguments."""
 
 from xml.etree import ElementTree
 
@@ -7,7 +7,7 @@ from ..robots import ROOT
 
 NAME = 'dynamics_node'
 PACKAGE = 'dynamics_node'
-# Of this checkout: a package of this name may be installed from somewhere else.
+# Of this checkout: another version may be installed.
 VERSION = ElementTree.parse(ROOT / 'package.xml').findtext('version')
 NOTE = (
     "Machine code of the robot's own, the methods of `RobotModel` themselves: arguments are "

@@ -1,4 +1,4 @@
-"""This library before a robot has machine code of its own, and for very large robots."""
+"""This library without code for the robot: before its compilation, and for very large robots."""
 
 import os
 

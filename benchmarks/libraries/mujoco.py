@@ -30,7 +30,7 @@ def model_of(robot):
     Raises
     ------
     ValueError
-        If it counts the joints in another order.
+        If its order of joints differs.
 
     """
     root = ElementTree.fromstring(robot.text)
@@ -38,7 +38,7 @@ def model_of(robot):
     ElementTree.SubElement(extension, 'compiler', fusestatic='true')
     model = mujoco.MjModel.from_xml_string(ElementTree.tostring(root, encoding='unicode'))
     names = tuple(model.joint(k).name for k in range(model.njnt))
-    robot.demand_order(names)
+    robot.check_joint_order(names)
     return model
 
 

@@ -1,4 +1,4 @@
-"""This library with a payload: the machine code that serves all of them."""
+"""This library with a payload: machine code for any payload."""
 
 from .dynamics_node import calls_of, PACKAGE, VERSION
 

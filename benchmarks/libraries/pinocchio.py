@@ -27,12 +27,12 @@ def model_of(robot):
     Raises
     ------
     ValueError
-        If it counts the joints in another order.
+        If its order of joints differs.
 
     """
     model = pinocchio.buildModelFromXML(robot.text)
     names = tuple(model.names)[1:]
-    robot.demand_order(names)
+    robot.check_joint_order(names)
     return model
 
 

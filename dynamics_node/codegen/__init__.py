@@ -1,31 +1,22 @@
 """
-Machine code for one robot: the closed form without loops, zeros and questions.
+Machine code for one robot: the recursion unrolled, zeros folded, branch-free.
 
-A robot's tree is known before its state, so the formulas of `recursive` are run once on symbols
-(`symbols`, `quantities`), written down as LLVM code for one state and for several states side by
-side (`code`, `sine`, `functions`), given an entry from Python (`call`), compiled (`machine`), and
-kept on disk (`store`). `robot_code` puts it together, `background` does so in another process.
+A robot's tree is known before its state. So the formulas of `kernels.recursive` are run once on
+tracing scalars (`trace`), written as LLVM code for one state and for several states side by side
+(`llvm_ir`, `sine`), given an entry from Python (`python_entry`), compiled for this processor
+(`llvm_target`), compared with the general kernel (`compile`) and kept on disk (`disk_cache`).
+`manager` decides when, and `worker` does it in another process; until then the general kernel
+answers.
 
-A robot has two: its own knows the inertia of its bodies as it knows the tree; the other reads it
+A robot has two codes: its own contains the inertia of its bodies; the payload variant reads it
 when it runs, and so serves every payload and every rotor inertia. It is a little slower.
-
-Nobody has to wait for it: the general kernel answers until it is ready.
 
 What may change here: how the formulas become machine code, never the formulas.
 
 """
 
-from .compile import are_ordinary, from_disk, is_wanted, make, RobotCode
-from .python_entry import is_supported, make_callable
-from .worker import start
+from .compile import RobotCode
+from .manager import Specialization
+from .python_entry import is_supported
 
-__all__ = [
-    'RobotCode',
-    'are_ordinary',
-    'from_disk',
-    'is_supported',
-    'is_wanted',
-    'make',
-    'make_callable',
-    'start',
-]
+__all__ = ['RobotCode', 'Specialization', 'is_supported']

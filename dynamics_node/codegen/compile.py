@@ -1,174 +1,69 @@
-"""The processor here: what its code is called, how LLVM code becomes its code, and loading it."""
+"""Machine code of one robot: compiled, kept, loaded, and compared with the general kernel."""
 
+from collections.abc import Callable, Sequence
 import ctypes
-import functools
 import os
 import struct
+from types import MethodType
+from typing import Any
 
-import llvmlite
-import llvmlite.binding as llvm
 import numpy as np
+from numpy.typing import NDArray
 
-from . import disk_cache, llvm_ir, python_entry, trace
+from . import disk_cache, llvm_ir, llvm_target, python_entry, trace
 from .sine import LARGEST_ANGLE
 from .trace import ProgramTooLongError
 from ..kernels import recursive
 from ..kernels.jit import compiled
+from ..kernels.packing import PackedModel
 
-_SPEED = 2
-
-
-@functools.cache
-def _host():
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-    return llvm.get_host_cpu_name(), llvm.get_host_cpu_features()
-
-
-def description():
-    """Return what machine code depends on: versions of LLVM, processor and its features."""
-    name, features = _host()
-    version = '.'.join(map(str, llvm.llvm_version_info))
-    return f'llvmlite {llvmlite.__version__} LLVM {version} {name} {features.flatten()}'
-
-
-def lanes():
-    """
-    Return how many states are computed side by side.
-
-    Four with AVX: eight, where there is AVX-512, are slower, because what has to be kept between
-    the operations no longer fits into the cache beside the code.
-
-    """
-    _, features = _host()
-    return 4 if features.get('avx') else 2
-
-
-def _target():
-    name, features = _host()
-    return llvm.Target.from_default_triple().create_target_machine(
-        cpu=name, features=features.flatten(), opt=_SPEED, codemodel='jitdefault', jit=True
-    )
-
-
-def compile_code(text):
-    """
-    Compile LLVM code.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    bytes
-        An object file.
-
-    Raises
-    ------
-    RuntimeError
-        If LLVM does not take the code.
-
-    """
-    module, target = llvm.parse_assembly(text), _target()
-    # LLVM's passes over the code are left out: it comes without loops and repetitions, and they
-    # find nothing. Looking for sums to pack into vectors takes most of their time, and what it
-    # packs runs more slowly.
-    return target.emit_object(module)
-
-
-class LoadedCode:
-    """
-    Machine code in memory, where it stays.
-
-    It is never freed: when garbage is collected, the finalizers of those who still call it may
-    run after its own.
-
-    """
-
-    def __init__(self, object_files, names):
-        """
-        Load object files.
-
-        Parameters
-        ----------
-        object_files : sequence of bytes
-            As `compile_code` returns them.
-        names : iterable of str
-            Of the functions that are wanted.
-
-        Raises
-        ------
-        RuntimeError
-            If LLVM cannot load them, or a function is not there.
-
-        """
-        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(''), _target())
-        for object_file in object_files:
-            engine.add_object_file(llvm.ObjectFileRef.from_data(object_file))
-        engine.finalize_object()
-        self._addresses = {name: engine.get_function_address(name) for name in names}
-        engine.detach()
-        missing = [name for name, address in self._addresses.items() if not address]
-        if missing:
-            raise RuntimeError(f'expected machine code of {", ".join(missing)}, got none')
-
-    def address(self, name):
-        """Return the address of a function."""
-        return self._addresses[name]
-
-
-# Batches of these quantities are computed several states at a time.
+# Quantities with a function for batches, which computes several states at a time.
 _BATCHED = ('dynamics', 'mass_matrix', 'gravity_torque', 'inverse_dynamics')
 
-# How closely the results of the machine code must meet the general kernel's when it is loaded.
-# Both are right to 1e-14 of the largest element; this tells damaged code from rounding.
+# Largest difference between machine code and general kernel, relative to the largest element.
+# Both are right to 1e-14; this bound separates damaged code from rounding.
 _AGREEMENT = 1e-9
 
 _SIZE = struct.Struct('<Q')
 
-# What was loaded once stays: a robot's next model shares it.
-_loaded: dict = {}
+# Cache key → code. It is never unloaded; the next model of the same robot shares it.
+_loaded: dict[str, 'RobotCode'] = {}
 
 
-def is_wanted():
-    """Return False if DYNAMICS_NODE_SPECIALIZE=0 asks to do without machine code for robots."""
+def is_wanted() -> bool:
+    """Return False if DYNAMICS_NODE_SPECIALIZE=0 turns machine code for robots off."""
     return os.environ.get('DYNAMICS_NODE_SPECIALIZE', '1') != '0'
 
 
 class RobotCode:
     """
-    The machine code of one robot.
+    The machine code of one robot, loaded.
 
     Attributes
     ----------
     lanes : int
-        States that a batch function computes at once, the fewest that it takes.
-    loaded : LoadedCode
+        Number of states that a batch function computes at once, and the smallest batch.
 
     """
 
-    def __init__(self, structure, numbers, object_files, any_inertia=False):
+    def __init__(self, packed: PackedModel, object_files: bytes):
         """
         Load machine code and compare it with the general kernel.
 
         Parameters
         ----------
-        structure, numbers : numpy.ndarray
-            See `packing.pack`.
+        packed : PackedModel
         object_files : bytes
-            As `compile_robot` returns them.
-        any_inertia : bool
-            See `quantities`.
+            Returned by `compile_robot`.
 
         Raises
         ------
         RuntimeError
-            If it cannot be loaded or computes something else.
+            If it cannot be loaded or its results differ from those of the general kernel.
 
         """
-        self.lanes = lanes()
-        self.loaded = LoadedCode(
+        self.lanes = llvm_target.lanes()
+        self._addresses = llvm_target.load(
             _split(object_files),
             [
                 *trace.SIGNATURES,
@@ -179,32 +74,72 @@ class RobotCode:
         self._batch = {
             name: self._function(f'{name}_batch', name, None, ctypes.c_int64) for name in _BATCHED
         }
-        self._compare(structure, _loaded_everywhere(numbers) if any_inertia else numbers)
+        numbers = packed.numbers
+        self._compare(
+            packed.structure, _with_test_loads(numbers) if packed.payload_variant else numbers
+        )
 
-    def _function(self, symbol, name, result, *more):
+    def _function(self, symbol: str, name: str, result: Any, *more: Any) -> Callable[..., Any]:
         inputs, outputs = trace.SIGNATURES[name]
         pointers = [ctypes.c_void_p] * (len(inputs) + 1 + outputs)
-        return ctypes.CFUNCTYPE(result, *pointers, *more)(self.loaded.address(symbol))
+        return ctypes.CFUNCTYPE(result, *pointers, *more)(self._addresses[symbol])
 
-    def batch(self, name, numbers, inputs, outputs):
+    def python_entry(
+        self,
+        name: str,
+        shapes: Sequence[tuple[int, ...]],
+        fallback: MethodType,
+        documentation: str | None,
+        terms_type: type,
+        numbers: NDArray[np.float64],
+    ) -> Callable[..., Any]:
+        """Return a builtin function of one state; see `python_entry.make_callable`."""
+        return python_entry.make_callable(
+            self._addresses[f'{name}_call'],
+            name,
+            shapes,
+            fallback,
+            documentation,
+            terms_type,
+            numbers,
+        )
+
+    def compute_batch(
+        self,
+        name: str,
+        numbers: NDArray[np.float64],
+        inputs: Sequence[NDArray[np.float64]],
+        outputs: Sequence[NDArray[np.float64]],
+    ) -> bool:
         """
-        Compute a quantity of many states; other threads run meanwhile.
+        Compute a quantity of many states, if its machine code covers them.
+
+        Other threads run meanwhile.
 
         Parameters
         ----------
         name : str
             'dynamics', 'mass_matrix', 'gravity_torque' or 'inverse_dynamics'.
         numbers : numpy.ndarray
-            See `packing.pack`: of this robot; with `any_inertia`, under any load.
+            See `PackedModel`: of this robot; in the payload variant, with any payload.
         inputs, outputs : sequence of numpy.ndarray, shape (B, ...)
-            Contiguous, float64; B is at least `lanes`. The outputs are overwritten.
+            Contiguous, float64. The outputs are overwritten.
+
+        Returns
+        -------
+        bool
+            False, and nothing is computed, for fewer than `lanes` states or inputs outside the
+            fast range: the general kernel has to compute these.
 
         """
+        if len(inputs[0]) < self.lanes or not within_fast_range(name, inputs):
+            return False
         arrays = [*inputs, numbers, *outputs]
         self._batch[name](*(array.ctypes.data for array in arrays), len(inputs[0]))
+        return True
 
-    def _compare(self, structure, numbers):
-        # Every function at one state, which the batches get several times.
+    def _compare(self, structure: NDArray[np.int64], numbers: NDArray[np.float64]) -> None:
+        # Every function at one state; the batches get it several times.
         n = recursive.joint_count(structure)
         state = dict(
             zip(
@@ -214,29 +149,29 @@ class RobotCode:
             )
         )
         expected = _general(structure, numbers, state)
-        are_ordinary('dynamics', [state['q'], state['qd']])  # compiled now, not in a control loop
         for name, (inputs, _) in trace.SIGNATURES.items():
             arguments = [state[key] for key in inputs]
             outputs = [np.empty_like(array) for array in expected[name]]
             function = self._function(name, name, ctypes.c_bool)
             pointers = [array.ctypes.data for array in (*arguments, numbers, *outputs)]
             if function(*pointers):
-                _demand_agreement(name, outputs, expected[name])
+                _require_agreement(name, outputs, expected[name])
             if name in _BATCHED:
-                many = [np.repeat(array, self.lanes, axis=0) for array in expected[name]]
-                self.batch(
+                # This call compiles the range check too, here and not in a control loop.
+                repeated = [np.repeat(array, self.lanes, axis=0) for array in expected[name]]
+                self.compute_batch(
                     name,
                     numbers,
                     [np.repeat(array, self.lanes, axis=0) for array in arguments],
-                    many,
+                    repeated,
                 )
-                _demand_agreement(name, many, expected[name])
+                _require_agreement(name, repeated, expected[name])
 
 
-def _loaded_everywhere(numbers):
-    # Every body gets a load of its own, of a size that fits the robot: so the comparison looks
-    # at every input, at a mass matrix that is far from singular, and does not depend on whose
-    # payload comes first.
+def _with_test_loads(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
+    # Every body gets a different load of a size that fits the robot. So the comparison covers
+    # every input, the mass matrix is far from singular, and the result does not depend on the
+    # payload of the model that comes first.
     size = np.abs(numbers[:-1, recursive.TRANSLATION : recursive.AXIS]).max() or 1.0
     loaded = numbers.copy()
     body = loaded[:-1]
@@ -249,11 +184,15 @@ def _loaded_everywhere(numbers):
     factor = np.linspace(1.0, 2.0, len(body))
     body[:, recursive.INERTIA : recursive.MULTIPLIER] *= factor[:, None]
     body[:, recursive.ROTOR] *= factor
-    loaded.flags.writeable = False  # a type that is compiled already
+    loaded.flags.writeable = False  # the array type for which the kernels are compiled already
     return loaded
 
 
-def _general(structure, numbers, state):
+def _general(
+    structure: NDArray[np.int64],
+    numbers: NDArray[np.float64],
+    state: dict[str, NDArray[np.float64]],
+) -> dict[str, tuple[NDArray[np.float64], ...]]:
     q, qd, qdd, tau = (state[key] for key in ('q', 'qd', 'qdd', 'tau'))
     n = q.shape[1]
     D, C = np.empty((2, 1, n, n))
@@ -274,24 +213,26 @@ def _general(structure, numbers, state):
     }
 
 
-def _demand_agreement(name, actual, expected):
-    for mine, theirs in zip(actual, expected, strict=True):
-        # Written so that NaN fails.
-        if not np.abs(mine - theirs).max() <= _AGREEMENT * (np.abs(theirs).max() + 1e-3):
+def _require_agreement(
+    name: str, actual: Sequence[NDArray[np.float64]], expected: Sequence[NDArray[np.float64]]
+) -> None:
+    for result, reference in zip(actual, expected, strict=True):
+        # In this form NaN fails too.
+        if not np.abs(result - reference).max() <= _AGREEMENT * (np.abs(reference).max() + 1e-3):
             raise RuntimeError(
                 f'{name}: the machine code computes something else than the general kernel'
             )
 
 
-def are_ordinary(name, inputs):
+def within_fast_range(name: str, inputs: Sequence[NDArray[np.float64]]) -> bool:
     """
-    Return whether the machine code may be used: all numbers finite, no angle too large.
+    Return whether the machine code covers the inputs: finite numbers, no angle too large.
 
     Parameters
     ----------
     name : str
         Of the quantity.
-    inputs : sequence of numpy.ndarray
+    inputs : sequence of numpy.ndarray, shape (B, n)
         Its arguments.
 
     Returns
@@ -307,8 +248,8 @@ def are_ordinary(name, inputs):
 
 
 @compiled
-def _is_below(values, bound):
-    # One look at each number; NaN is not below anything.
+def _is_below(values: NDArray[np.float64], bound: float) -> bool:
+    # One pass without temporary arrays. NaN fails the comparison.
     below = True
     for b in range(values.shape[0]):
         for i in range(values.shape[1]):
@@ -316,16 +257,13 @@ def _is_below(values, bound):
     return below
 
 
-def compile_robot(structure, numbers, any_inertia=False):
+def compile_robot(packed: PackedModel) -> bytes | None:
     """
     Compile the machine code of a robot.
 
     Parameters
     ----------
-    structure, numbers : numpy.ndarray
-        See `packing.pack`.
-    any_inertia : bool
-        See `quantities`.
+    packed : PackedModel
 
     Returns
     -------
@@ -335,14 +273,14 @@ def compile_robot(structure, numbers, any_inertia=False):
     Raises
     ------
     RuntimeError
-        If LLVM does not take the code.
+        If LLVM rejects the code.
 
     """
-    width = lanes()
+    width = llvm_target.lanes()
     objects = []
     for record in trace.ALL:
         try:
-            quantity = record(structure, numbers, any_inertia)
+            quantity = record(packed)
         except ProgramTooLongError:
             return None
         parts = [
@@ -353,11 +291,11 @@ def compile_robot(structure, numbers, any_inertia=False):
         ]
         if quantity.name in _BATCHED:
             parts.append(llvm_ir.batch_function(quantity, width))
-        objects.append(compile_code('\n'.join(parts)))
+        objects.append(llvm_target.compile_code('\n'.join(parts)))
     return b''.join(_SIZE.pack(len(item)) + item for item in objects)
 
 
-def _split(content):
+def _split(content: bytes) -> list[bytes]:
     objects, at = [], 0
     while at < len(content):
         (size,) = _SIZE.unpack_from(content, at)
@@ -367,16 +305,13 @@ def _split(content):
     return objects
 
 
-def from_disk(structure, numbers, any_inertia=False):
+def from_disk(packed: PackedModel) -> RobotCode | None:
     """
     Return a robot's machine code if it was compiled before.
 
     Parameters
     ----------
-    structure, numbers : numpy.ndarray
-        See `packing.pack`.
-    any_inertia : bool
-        See `quantities`.
+    packed : PackedModel
 
     Returns
     -------
@@ -385,28 +320,25 @@ def from_disk(structure, numbers, any_inertia=False):
     Raises
     ------
     RuntimeError
-        If what is there cannot be loaded or computes something else.
+        If the file cannot be loaded or its results differ from those of the general kernel.
 
     """
-    name = disk_cache.key(structure, numbers, any_inertia)
+    name = disk_cache.key(packed)
     if name not in _loaded:
         object_files = disk_cache.load(name)
         if object_files is None:
             return None
-        _loaded[name] = RobotCode(structure, numbers, object_files, any_inertia)
+        _loaded[name] = RobotCode(packed, object_files)
     return _loaded[name]
 
 
-def make(structure, numbers, any_inertia=False):
+def make(packed: PackedModel) -> RobotCode | None:
     """
-    Return a robot's machine code, from disk or compiled here and now, and kept.
+    Return a robot's machine code from disk, or compile it in this process and keep it on disk.
 
     Parameters
     ----------
-    structure, numbers : numpy.ndarray
-        See `packing.pack`.
-    any_inertia : bool
-        See `quantities`.
+    packed : PackedModel
 
     Returns
     -------
@@ -416,18 +348,18 @@ def make(structure, numbers, any_inertia=False):
     Raises
     ------
     RuntimeError
-        If LLVM does not take the code, or it computes something else.
+        If LLVM rejects the code, or its results differ from those of the general kernel.
 
     """
     try:
-        ready = from_disk(structure, numbers, any_inertia)
+        code = from_disk(packed)
     except RuntimeError:
-        ready = None
-    if ready is None:
-        object_files = compile_robot(structure, numbers, any_inertia)
+        code = None
+    if code is None:
+        object_files = compile_robot(packed)
         if object_files is None:
             return None
-        name = disk_cache.key(structure, numbers, any_inertia)
+        name = disk_cache.key(packed)
         disk_cache.save(name, object_files)
-        ready = _loaded[name] = RobotCode(structure, numbers, object_files, any_inertia)
-    return ready
+        code = _loaded[name] = RobotCode(packed, object_files)
+    return code

@@ -1,8 +1,8 @@
 """
-Machine code on disk, found by what it was made from.
+Machine code on disk, named by a hash of its sources.
 
-One file per robot in `~/.cache/dynamics_node` (or where DYNAMICS_NODE_CACHE_DIR or XDG_CACHE_HOME
-say). A file that is damaged or misplaced, or that somebody else may have written, counts as
+One file per robot in DYNAMICS_NODE_CACHE_DIR, by default `dynamics_node` in XDG_CACHE_HOME or
+`~/.cache`. A file that is damaged or misplaced, or that another user may have written, counts as
 missing.
 
 """
@@ -17,30 +17,31 @@ import tempfile
 
 import numpy as np
 
-from . import compile, trace
+from . import llvm_target, trace
+from ..kernels.packing import PackedModel
 
 _MAGIC = b'dynamics_node machine code 2\n'
-# The files that were not used for longest go beyond this: some 30 MB.
-_MOST_FILES = 100
-# What `key` returns.
+# Number of files kept, some 30 MB; those unused for longest are removed.
+_MAX_FILES = 100
+# Form of the names that `key` returns.
 _NAME = re.compile('[0-9a-f]{64}')
 
 
-def _read_sources():
-    # The formulas and all that turns them into machine code.
+def _read_sources() -> bytes:
+    # The formulas and the code generator.
     here = Path(__file__).parent
     files = sorted([*here.glob('*.py'), here.parent / 'kernels' / 'recursive.py'])
     return b''.join(path.read_bytes() for path in files)
 
 
-# Read when they are imported: a package that is replaced under a running process must not file
-# old code under the name of the new.
+# Read when this module is imported: if the package is replaced under a running process, code of
+# the old sources must not get the name of the new ones.
 _SOURCES = hashlib.sha256(_read_sources())
 
 
-def folder():
+def folder() -> Path:
     """
-    Return where the machine code is kept.
+    Return the folder of the machine code.
 
     Returns
     -------
@@ -49,7 +50,7 @@ def folder():
     Raises
     ------
     RuntimeError
-        If nothing says where: no variable, and no home.
+        If neither variable is set and the user has no home.
 
     """
     own = os.environ.get('DYNAMICS_NODE_CACHE_DIR')
@@ -59,16 +60,14 @@ def folder():
     return (Path(base) if base else Path.home() / '.cache') / 'dynamics_node'
 
 
-def key(structure, numbers, any_inertia=False):
+def key(packed: PackedModel) -> str:
     """
     Return the name of a robot's machine code.
 
     Parameters
     ----------
-    structure, numbers : numpy.ndarray
-        See `packing.pack`; what is an input of the programs does not matter.
-    any_inertia : bool
-        See `quantities`.
+    packed : PackedModel
+        The numbers that are inputs of the programs are left out of the hash.
 
     Returns
     -------
@@ -77,25 +76,25 @@ def key(structure, numbers, any_inertia=False):
 
     """
     digest = _SOURCES.copy()
-    digest.update(compile.description().encode())
-    digest.update(repr(structure.shape).encode())
-    digest.update(structure.tobytes())
-    constants = np.array(numbers)
-    for place in trace.input_places(len(structure), any_inertia):
+    digest.update(llvm_target.description().encode())
+    digest.update(repr(packed.structure.shape).encode())
+    digest.update(packed.structure.tobytes())
+    constants = np.array(packed.numbers)
+    for place in trace.input_places(packed):
         constants[place] = 0.0
-    digest.update(repr(any_inertia).encode())
+    digest.update(repr(packed.payload_variant).encode())
     digest.update(constants.tobytes())
     return digest.hexdigest()
 
 
-def load(name):
+def load(name: str) -> bytes | None:
     """
-    Return a robot's machine code, if it is there.
+    Return a robot's machine code, if its file exists and can be trusted.
 
     Parameters
     ----------
     name : str
-        See `key`.
+        Returned by `key`.
 
     Returns
     -------
@@ -106,7 +105,7 @@ def load(name):
         place = folder()
         if not _is_our_folder(place):
             return None
-        # Neither a link to elsewhere nor a pipe that would never answer.
+        # Neither follow a link nor wait for a pipe.
         file = os.open(place / name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
         with os.fdopen(file, 'rb') as stream:
             status = os.fstat(file)
@@ -121,28 +120,28 @@ def load(name):
     return code if head == _head(name, code) else None
 
 
-def _head(name, code):
+def _head(name: str, code: bytes) -> bytes:
     return _MAGIC + hashlib.sha256(name.encode() + code).digest()
 
 
-def _is_our_folder(place):
-    # A link that somebody else has set could lead to any other folder of ours.
+def _is_our_folder(place: Path) -> bool:
+    # A link set by another user could lead to any other folder of this user.
     return place.lstat().st_uid in (os.getuid(), 0) and _is_ours(place.stat())
 
 
-def _is_ours(status):
+def _is_ours(status: os.stat_result) -> bool:
     others_write = stat.S_IWGRP | stat.S_IWOTH
     return status.st_uid == os.getuid() and not status.st_mode & others_write
 
 
-def save(name, code):
+def save(name: str, code: bytes) -> bool:
     """
-    Keep a robot's machine code, if there is a place for it.
+    Keep a robot's machine code, if the folder can be written and is private.
 
     Parameters
     ----------
     name : str
-        See `key`.
+        Returned by `key`.
     code : bytes
 
     Returns
@@ -155,14 +154,14 @@ def save(name, code):
         place = folder()
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
         if not _is_our_folder(place):
-            return False  # it would not be loaded from there, and nothing there is ours to clear
-        _clear(place)
+            return False  # `load` would ignore the file, and its other files must not be removed
+        _remove_oldest(place)
         with tempfile.NamedTemporaryFile(dir=place, prefix='new-', delete=False) as file:
             unfinished = Path(file.name)
             try:
                 file.write(_head(name, code) + code)
                 file.flush()
-                # Complete or not there: others may look for it at the same time.
+                # Atomic: another process may look for the file at the same time.
                 unfinished.replace(place / name)
             except OSError:
                 unfinished.unlink()
@@ -172,13 +171,13 @@ def save(name, code):
     return True
 
 
-def _clear(place):
-    # Only files of ours: the folder may be one that is used for other things too.
+def _remove_oldest(place: Path) -> None:
+    # Only files with our form of name: the folder may hold other files too.
     ages = []
     for path in place.iterdir():
         if _NAME.fullmatch(path.name):
-            with contextlib.suppress(OSError):  # gone already: another process clears too
+            with contextlib.suppress(OSError):  # another process has removed it
                 ages.append((path.stat().st_mtime, path))
-    for _, path in sorted(ages, reverse=True)[_MOST_FILES - 1 :]:
+    for _, path in sorted(ages, reverse=True)[_MAX_FILES - 1 :]:
         with contextlib.suppress(OSError):
             path.unlink()

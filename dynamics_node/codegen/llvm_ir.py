@@ -1,9 +1,10 @@
-"""Straight-line programs as LLVM code, one state or several lanes of states at a time."""
+"""Straight-line programs as LLVM code, for one state or for one state per lane."""
 
+from collections.abc import Callable, Sequence
 import struct
 
 from .sine import sine_and_cosine
-from .trace import Symbol
+from .trace import Quantity, Symbol
 
 _ARITHMETIC = {'add': 'fadd', 'subtract': 'fsub', 'multiply': 'fmul', 'divide': 'fdiv'}
 
@@ -16,56 +17,55 @@ class Code:
     ----------
     lines : list of str
     lanes : int
-        How many states one value holds.
+        Number of states that one value holds.
     number, integer, truth : str
         LLVM's names of the types.
 
     """
 
-    def __init__(self, lanes=1):
-        """Begin with nothing."""
-        self.lines = []
+    def __init__(self, lanes: int = 1):
+        self.lines: list[str] = []
         self.lanes = lanes
         self.number, self.integer, self.truth = (
             kind if lanes == 1 else f'<{lanes} x {kind}>' for kind in ('double', 'i64', 'i1')
         )
         self._count = 0
 
-    def line(self, text):
-        """Append a line that makes a value and return the value's name."""
+    def line(self, text: str) -> str:
+        """Append an instruction with a result, and return the name of the result."""
         self._count += 1
         self.lines.append(f'  %v{self._count} = {text}')
         return f'%v{self._count}'
 
-    def do(self, text):
-        """Append a line that makes no value."""
+    def do(self, text: str) -> None:
+        """Append an instruction without a result."""
         self.lines.append(f'  {text}')
 
-    def constant(self, value):
-        """Return a number as LLVM writes it: the 64 bits in hexadecimal digits."""
+    def constant(self, value: float) -> str:
+        """Return a number in LLVM's notation: the 64 bits in hexadecimal digits."""
         digits = f'0x{struct.pack(">d", value).hex().upper()}'
         return digits if self.lanes == 1 else self._repeated(f'double {digits}')
 
-    def integer_constant(self, value):
-        """Return an integer as LLVM writes it."""
+    def integer_constant(self, value: int) -> str:
+        """Return an integer in LLVM's notation."""
         return str(value) if self.lanes == 1 else self._repeated(f'i64 {value}')
 
-    def _repeated(self, text):
+    def _repeated(self, text: str) -> str:
         return '<' + ', '.join([text] * self.lanes) + '>'
 
-    def fma(self, a, b, c):
+    def fma(self, a: str, b: str, c: str) -> str:
         """Append a b + c, rounded once."""
         kind = 'f64' if self.lanes == 1 else f'v{self.lanes}f64'
         arguments = ', '.join(f'{self.number} {x}' for x in (a, b, c))
         return self.line(f'call {self.number} @llvm.fma.{kind}({arguments})')
 
-    def address(self, pointer, index):
-        """Append the address of a double behind a pointer."""
+    def address(self, pointer: str, index: int | str) -> str:
+        """Append the address of the double at an index behind a pointer."""
         return self.line(f'getelementptr double, ptr {pointer}, i64 {index}')
 
 
-def declarations(lanes):
-    """Return what LLVM must know before code of some width."""
+def declarations(lanes: int) -> list[str]:
+    """Return the declarations of external functions that code of some width calls."""
     kinds = {'f64': 'double'}
     if lanes > 1:
         kinds[f'v{lanes}f64'] = f'<{lanes} x double>'
@@ -74,7 +74,9 @@ def declarations(lanes):
     ]
 
 
-def append_program(code, quantity, values):
+def append_program(
+    code: Code, quantity: Quantity, values: Callable[[str, int], str]
+) -> Callable[[Symbol | float], str]:
     """
     Append a quantity's program.
 
@@ -95,7 +97,7 @@ def append_program(code, quantity, values):
     names: dict[int, str] = {}
     angles: dict[int, tuple[str, str]] = {}
 
-    def name(value):
+    def name(value: Symbol | float) -> str:
         return names[value.index] if isinstance(value, Symbol) else code.constant(value)
 
     for index in program.needed(quantity.results()):
@@ -110,7 +112,7 @@ def append_program(code, quantity, values):
         elif operation == 'negate':
             names[index] = code.line(f'fneg {code.number} {name(arguments[0])}')
         else:
-            # 'contract': a multiplication and an addition may be fused, which rounds once less.
+            # 'contract' lets LLVM fuse a multiplication and an addition: one rounding less.
             left, right = map(name, arguments)
             names[index] = code.line(
                 f'{_ARITHMETIC[operation]} contract {code.number} {left}, {right}'
@@ -118,9 +120,11 @@ def append_program(code, quantity, values):
     return name
 
 
-def state_function(quantity):
+def state_function(quantity: Quantity) -> str:
     """
     Return the LLVM function of one state.
+
+    It returns false if a number that must be positive is not; then the outputs are invalid.
 
     Parameters
     ----------
@@ -133,31 +137,32 @@ def state_function(quantity):
     """
     code = Code()
 
-    def load(name, index):
+    def load(name: str, index: int) -> str:
         return code.line(f'load double, ptr {code.address("%" + name, index)}')
 
     name = append_program(code, quantity, load)
     for place, output in enumerate(quantity.outputs):
         for index, value in enumerate(output.flat):
             code.do(f'store double {name(value)}, ptr {code.address(f"%out{place}", index)}')
-    sound = 'true'
+    is_valid = 'true'
     for value in quantity.positive:
         positive = code.line(f'fcmp ogt double {name(value)}, {code.constant(0.0)}')
-        sound = code.line(f'and i1 {sound}, {positive}')
-    code.do(f'ret i1 {sound}')
+        is_valid = code.line(f'and i1 {is_valid}, {positive}')
+    code.do(f'ret i1 {is_valid}')
     return _function('i1', quantity.name, _pointers(quantity), code.lines)
 
 
-def batch_function(quantity, lanes):
+def batch_function(quantity: Quantity, lanes: int) -> str:
     """
     Return the LLVM function of many states.
 
-    `lanes` states at a time. The last ones are computed twice if B is no multiple of `lanes`.
+    `lanes` states at a time. The last block overlaps the one before if B is no multiple of
+    `lanes`.
 
     Parameters
     ----------
     quantity : Quantity
-        Without conditions.
+        Without numbers that must be positive.
     lanes : int
         2, 4 or 8.
 
@@ -169,7 +174,8 @@ def batch_function(quantity, lanes):
     code = Code(lanes)
     n = quantity.joint_count
     # The robot's numbers are the same for all states. Gravity alone is read once, before the loop;
-    # with inertia they are too many to keep, and the compiler takes ten times as long to try.
+    # inertia has too many numbers to keep in registers, and compiling would take ten times as
+    # long.
     places = _places(quantity)
     kept = {place: _number(code, place) for place in places} if len(places) <= 3 else {}
     code.do('%last = sub i64 %count, ' + str(lanes))
@@ -180,7 +186,7 @@ def batch_function(quantity, lanes):
     code.do('%state = select i1 %beyond, i64 %last, i64 %begin')
     rows = {name: _row(code, f'%{name}', n) for name in quantity.inputs}
 
-    def load(name, index):
+    def load(name: str, index: int) -> str:
         if name == 'numbers':
             return kept[index] if kept else _number(code, index)
         return _gather(code, rows[name], n, index)
@@ -199,8 +205,8 @@ def batch_function(quantity, lanes):
     )
 
 
-def _places(quantity):
-    # Which of the robot's numbers the program reads.
+def _places(quantity: Quantity) -> list[int]:
+    # Indices of the robot's numbers that the program reads.
     operations = quantity.program.operations
     needed = (operations[index] for index in quantity.program.needed(quantity.results()))
     return sorted(
@@ -210,26 +216,27 @@ def _places(quantity):
     )
 
 
-def _number(code, place):
+def _number(code: Code, place: int) -> str:
     return _splat(code, code.line(f'load double, ptr {code.address("%numbers", place)}'))
 
 
-def _pointers(quantity):
+def _pointers(quantity: Quantity) -> list[str]:
     names = [*quantity.inputs, 'numbers', *(f'out{i}' for i in range(len(quantity.outputs)))]
     return [f'ptr %{name}' for name in names]
 
 
-def _function(kind, name, arguments, lines):
+def _function(kind: str, name: str, arguments: Sequence[str], lines: Sequence[str]) -> str:
     return '\n'.join([f'define {kind} @{name}({", ".join(arguments)}) {{', 'entry:', *lines, '}'])
 
 
-def _row(code, pointer, width):
+def _row(code: Code, pointer: str, width: int) -> str:
     # The address of this block's first state.
     offset = code.line(f'mul i64 %state, {width}')
     return code.address(pointer, offset)
 
 
-def _splat(code, scalar):
+def _splat(code: Code, scalar: str) -> str:
+    # The same number in every lane.
     first = code.line(f'insertelement {code.number} poison, double {scalar}, i32 0')
     return code.line(
         f'shufflevector {code.number} {first}, {code.number} poison, '
@@ -237,8 +244,8 @@ def _splat(code, scalar):
     )
 
 
-def _gather(code, row, width, index):
-    # Number `index` of each of the states.
+def _gather(code: Code, row: str, width: int, index: int) -> str:
+    # Number `index` of the state in each lane.
     value = 'poison'
     for lane in range(code.lanes):
         scalar = code.line(f'load double, ptr {code.address(row, lane * width + index)}')
@@ -246,9 +253,9 @@ def _gather(code, row, width, index):
     return value
 
 
-def _scatter(code, row, values):
-    # Each state's numbers side by side: squares of lanes x lanes numbers are transposed and
-    # stored by rows. The last square overlaps the one before.
+def _scatter(code: Code, row: str, values: Sequence[str]) -> None:
+    # Store the numbers of each state side by side: squares of lanes x lanes numbers are
+    # transposed and stored by rows. The last square overlaps the one before.
     width, lanes = len(values), code.lanes
     if width < lanes:
         for index, value in enumerate(values):
@@ -264,8 +271,8 @@ def _scatter(code, row, values):
             code.do(f'store {code.number} {numbers}, ptr {address}, align 8')
 
 
-def _transposed(code, square):
-    # Exchanges blocks of 1, 2, 4... numbers across the diagonal.
+def _transposed(code: Code, square: Sequence[str]) -> list[str]:
+    # Exchange blocks of 1, 2, 4... numbers across the diagonal.
     lanes, square = code.lanes, list(square)
     step = 1
     while step < lanes:
@@ -288,7 +295,7 @@ def _transposed(code, square):
     return square
 
 
-def _shuffle(code, a, b, mask):
+def _shuffle(code: Code, a: str, b: str, mask: Sequence[int]) -> str:
     places = ', '.join(f'i32 {k}' for k in mask)
     return code.line(
         f'shufflevector {code.number} {a}, {code.number} {b}, <{code.lanes} x i32> <{places}>'

@@ -1,9 +1,9 @@
 """
-Compiling in a process of its own: `python -m dynamics_node.codegen.worker`.
+Compilation in a separate process: `python -m dynamics_node.codegen.worker`.
 
 The process gets the robot on its standard input and leaves the machine code on disk. A thread
-would not do: recording and compiling would stop the caller for tenths of a second, through
-Python's lock, its garbage collector and the compiler's lock.
+would stop its caller for tenths of a second, because recording and compiling hold Python's lock
+and the compiler's lock, and trigger the garbage collector.
 
 """
 
@@ -18,32 +18,30 @@ import sys
 import numpy as np
 
 from . import compile, disk_cache
+from ..kernels.packing import PackedModel
 
-# Name of the machine code → the process that makes it, so that no robot is compiled twice.
-_processes: dict = {}
-# Robots that are compiled at the same time. Whoever publishes robot descriptions decides how many
-# there are, and each process takes a core and some 60 MB for seconds.
-_MOST_AT_ONCE = 2
+# Cache key → the process that compiles it, so that no robot is compiled twice.
+_processes: dict[str, subprocess.Popen[bytes]] = {}
+# Compilers that run at the same time. The publishers of robot descriptions determine how many
+# robots there are, and each process takes a core and some 60 MB for seconds.
+_MAX_PROCESSES = 2
 
 
-def start(structure, numbers, any_inertia=False):
+def start(packed: PackedModel) -> subprocess.Popen[bytes] | None:
     """
-    Start to make a robot's machine code, unless that is being done.
+    Start to compile a robot's machine code, unless a process does so already.
 
-    The process runs on when this one ends, for some seconds.
+    The process continues when this one ends, for some seconds.
 
     Parameters
     ----------
-    structure, numbers : numpy.ndarray
-        See `packing.pack`.
-    any_inertia : bool
-        See `quantities`.
+    packed : PackedModel
 
     Returns
     -------
     subprocess.Popen or None
-        Its exit code is 0 if the machine code is on disk. None if enough others are being made:
-        ask again later.
+        Its exit code is 0 if the machine code is on disk. None if the maximum number of compilers
+        is running: ask again later.
 
     Raises
     ------
@@ -51,15 +49,15 @@ def start(structure, numbers, any_inertia=False):
         If no process can be started.
 
     """
-    name = disk_cache.key(structure, numbers, any_inertia)
+    name = disk_cache.key(packed)
     if name not in _processes:
-        if sum(process.poll() is None for process in _processes.values()) >= _MOST_AT_ONCE:
+        if sum(process.poll() is None for process in _processes.values()) >= _MAX_PROCESSES:
             return None
-        # It finds the same packages, is nobody's foreground, and gives way to everything else.
-        # The same and no others: with -m alone, Python would look into the current folder first,
-        # and a numpy.py that somebody left there would run.
-        places = os.pathsep.join(place or str(Path.cwd()) for place in sys.path)
-        environment = dict(os.environ, PYTHONPATH=places, PYTHONSAFEPATH='1')
+        # The child finds the same packages, and no others: with -m alone, Python would search the
+        # current folder first and run a numpy.py that lies there. It has a session of its own, so
+        # Ctrl-C in the terminal does not reach it.
+        search_path = os.pathsep.join(place or str(Path.cwd()) for place in sys.path)
+        environment = dict(os.environ, PYTHONPATH=search_path, PYTHONSAFEPATH='1')
         process = subprocess.Popen(
             [sys.executable, '-m', __name__],
             stdin=subprocess.PIPE,
@@ -69,41 +67,53 @@ def start(structure, numbers, any_inertia=False):
             start_new_session=True,
         )
         _processes[name] = process
-        np.savez(
-            buffer := io.BytesIO(), structure=structure, numbers=numbers, any_inertia=any_inertia
-        )
         assert process.stdin is not None
         with contextlib.suppress(BrokenPipeError), process.stdin as stream:
-            stream.write(buffer.getvalue())
+            stream.write(_to_bytes(packed))
     return _processes[name]
 
 
+def _to_bytes(packed: PackedModel) -> bytes:
+    buffer = io.BytesIO()
+    np.savez(
+        buffer,
+        structure=packed.structure,
+        numbers=packed.numbers,
+        payload_variant=np.array(packed.payload_variant),
+    )
+    return buffer.getvalue()
+
+
+def _from_bytes(content: bytes) -> PackedModel:
+    with np.load(io.BytesIO(content)) as arrays:
+        return PackedModel(arrays['structure'], arrays['numbers'], bool(arrays['payload_variant']))
+
+
 @atexit.register
-def _let_go():
-    # Python would complain of a process that still runs.
+def _abandon_processes() -> None:
+    # Python would warn of a process that still runs.
     for process in _processes.values():
         if process.poll() is None:
             process.returncode = 0
 
 
-def main():
+def main() -> int:
     """
-    Make the machine code of the robot on standard input.
+    Compile the machine code of the robot on standard input.
 
     Returns
     -------
     int
-        0 if it is on disk, 1 if there is none.
+        Exit code: 0 if the machine code is on disk, 1 otherwise.
 
     """
     with contextlib.suppress(OSError, AttributeError):
         os.nice(10)
-    with np.load(io.BytesIO(sys.stdin.buffer.read())) as robot:
-        packed = robot['structure'], robot['numbers'], bool(robot['any_inertia'])
-    object_files = compile.compile_robot(*packed)
+    packed = _from_bytes(sys.stdin.buffer.read())
+    object_files = compile.compile_robot(packed)
     if object_files is None:
         return 1
-    return 0 if disk_cache.save(disk_cache.key(*packed), object_files) else 1
+    return 0 if disk_cache.save(disk_cache.key(packed), object_files) else 1
 
 
 if __name__ == '__main__':

@@ -1,7 +1,7 @@
 """
-A simulated robot in a process of its own, and the demo that lets it fall and holds it.
+The simulated robot, a separate process, and the demo: a fall without the node, rest with it.
 
-What may change here: the simulation, the story and the picture. Nothing in here imports the
-library: the simulation is the judge of its numbers.
+What may change here: the simulation, the sequence and the picture. The simulation judges the
+numbers of the library, so no module here imports the library.
 
 """

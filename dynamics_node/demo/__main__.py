@@ -1,8 +1,8 @@
 """
-The demo: a simulated arm falls, and the node holds it; the figures are measured, not shown.
+The demo: a simulated arm falls, and the node holds it; all displacements are measured.
 
-Two real processes over real DDS: `simulated_robot` (MuJoCo) and the node. Exit code 0 says that
-the arm fell without the node, and stood still with it at two places.
+Two processes communicate over DDS: `simulated_robot` (MuJoCo) and the node. Exit code 0 means
+that the arm fell without the node, and stood still with it at two poses.
 
 """
 
@@ -20,19 +20,19 @@ from rich.console import Console
 
 from .client import Client
 from .console_output import print_logs, print_mass_matrix, print_outcome
-from .files import arm7_path, read_robot
 from .missing_values import filled_in_limits, joints_without_limit
 from .mujoco_arm import MujocoArm
 from .plot import draw
-from .processes import DemoError, Processes
+from .processes import arm7_path, DemoError, Processes, read_robot
 from .recording import Recording
 from .robot_text import robot_name, RobotRefusedError
 from .story import Outcome, Story
+from .viewer import check_display
 
-# [s] A busy desktop computer may stop the simulation for longer than the node's 0.1 s.
+# [s] A busy desktop computer may delay the simulation by more than the node's default, 0.1 s.
 STATE_TIMEOUT = 0.5
-# Relative to the largest entry. MuJoCo keeps orientations as quaternions and the inertia of a
-# link in principal axes, which both round.
+# Relative to the largest entry: MuJoCo rounds orientations, as quaternions, and inertias, in
+# principal axes.
 MASS_MATRIX_TOLERANCE = 1e-6
 
 
@@ -41,8 +41,8 @@ def main(args: list[str] | None = None) -> int:
     options = _options(remove_ros_args(sys.argv if args is None else args)[1:])
     console = Console(highlight=False, width=None if sys.stdout.isatty() else 100)
     isolate()
-    # Also when it is terminated or its terminal closes, the demo must end its processes; and a
-    # shell that starts it in the background lets it, and so them, ignore SIGINT.
+    # Terminated or without its terminal, the demo still ends its processes. A shell that starts
+    # it in the background would let it and its processes ignore SIGINT.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.default_int_handler)
     try:
@@ -71,7 +71,7 @@ def _options(arguments: list[str]) -> argparse.Namespace:
         type=float,
         default=10.0,
         metavar='SECONDS',
-        help='how long the node holds the arm before the push (default: 10)',
+        help='duration of the hold before the push (default: 10)',
     )
     parser.add_argument('--output', type=Path, default=Path('demo.png'), help='the figure')
     return parser.parse_args(arguments)
@@ -84,7 +84,9 @@ def isolate() -> None:
 
 
 def _run(options: argparse.Namespace, console: Console) -> int:
-    """Run the story between two processes, print and draw what came out."""
+    """Run the demo, print and draw its measurements."""
+    if options.view:
+        check_display()
     outcome, arm, name = perform(
         options.robot or arm7_path(), options.hold, options.view, console, options.params_file
     )
@@ -98,34 +100,34 @@ def perform(
     path: Path, hold: float, view: bool, console: Console, params_file: Path | None = None
 ) -> tuple[Outcome, MujocoArm, str]:
     """
-    Tell the story to the robot of a URDF file.
+    Run the sequence with the robot of a URDF file.
 
     Parameters
     ----------
     path : Path
         The URDF file.
     hold : float
-        How long the node holds the arm before the push, s.
+        Duration of the hold before the push, s.
     view : bool
-        Whether MuJoCo's viewer shows it.
+        Whether to open MuJoCo's viewer.
     console : Console
-        Where to print what happens.
+        Receives the printed lines.
     params_file : Path, optional
         Parameters of the node.
 
     Returns
     -------
     outcome : Outcome
-        All joint states and what was measured.
+        Joint states and measurements.
     arm : MujocoArm
-        The same robot for computations of one's own.
+        The same robot, for further computations.
     name : str
         Its name in the URDF.
 
     Raises
     ------
     DemoError
-        If something that the story needs does not come; the logs are printed then.
+        If a process ends or a response does not come; the logs are printed.
     RobotRefusedError
         If the robot cannot be simulated.
 
@@ -139,7 +141,7 @@ def perform(
     with Processes() as processes:
         try:
             _start(processes, path, arm, view, console, params_file)
-            return _tell(processes, arm, hold, console), arm, name
+            return _run_story(processes, arm, hold, console), arm, name
         except DemoError:
             print_logs(console, processes.tails())
             raise
@@ -177,22 +179,22 @@ def _start(
     processes.start('dynamics_node', 'dynamics_node.ros.main', *parameters)
 
 
-def _tell(processes: Processes, arm: MujocoArm, hold: float, console: Console) -> Outcome:
-    """Connect, print the mass matrix, and go through the story."""
+def _run_story(processes: Processes, arm: MujocoArm, hold: float, console: Console) -> Outcome:
+    """Connect, print the mass matrix, and run the sequence."""
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         turning = [joint.turns for joint in arm.driven]
         client = Client(Recording(arm.driven_names, turning), processes.check)
         client.wait_until_ready()
-        answer = client.mass_matrix()
-        size = len(answer.joint_names)
-        matrix = np.array(answer.mass_matrix).reshape(size, size)
-        print_mass_matrix(console, answer.joint_names, matrix)
-        _compare_mass_matrix(answer.joint_names, answer.position, matrix, arm, console)
+        response = client.mass_matrix()
+        size = len(response.joint_names)
+        matrix = np.array(response.mass_matrix).reshape(size, size)
+        print_mass_matrix(console, response.joint_names, matrix)
+        _compare_mass_matrix(response.joint_names, response.position, matrix, arm, console)
         _pass_on_warnings(processes, console)
         _note_friction(arm, console)
         story = Story(client, hold, lambda line: console.print(f'• {line}', markup=False))
-        return story.tell()
+        return story.run()
     finally:
         rclpy.try_shutdown()
 
@@ -200,7 +202,7 @@ def _tell(processes: Processes, arm: MujocoArm, hold: float, console: Console) -
 def _compare_mass_matrix(
     names: list[str], position: list[float], matrix: np.ndarray, arm: MujocoArm, console: Console
 ) -> None:
-    """Hold the service's matrix, shape (n, n), against MuJoCo's own at the same position."""
+    """Compare the service's matrix, shape (n, n), with MuJoCo's at the same position."""
     order = [arm.driven_names.index(name) for name in names]
     driven = np.zeros(len(order))
     driven[order] = position
@@ -215,7 +217,7 @@ def _compare_mass_matrix(
 
 
 def _note_friction(arm: MujocoArm, console: Console) -> None:
-    """Say where dry friction helps to hold the robot, because it does so without any torque."""
+    """Print joints with dry friction, which helps to hold the robot without any torque."""
     sticky = [
         f'{joint.name} {friction:g}'
         for joint, friction in zip(arm.joints, arm.friction())
@@ -230,14 +232,14 @@ def _note_friction(arm: MujocoArm, console: Console) -> None:
 
 
 def _pass_on_warnings(processes: Processes, console: Console) -> None:
-    """Print what the simulated robot warns of: what it has added to the URDF."""
+    """Print the warnings of the simulated robot: values that it has added to the URDF."""
     for line in processes.lines('simulated_robot'):
         if '[WARN]' in line:
             console.print(f'note: {line.split("]: ", 1)[-1]}', markup=False)
 
 
 def _verdict(outcome: Outcome, console: Console) -> int:
-    """Print whether all was as it should be, and return the exit code."""
+    """Print the result, and return the exit code."""
     failures = outcome.failures()
     for failure in failures:
         console.print(f'demo failed: {failure}', style='bold red', markup=False)

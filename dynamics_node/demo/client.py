@@ -1,4 +1,4 @@
-"""The demo's side of ROS: one node, ONE executor that is kept, the services and the state."""
+"""The ROS node of the demo: service clients, joint states, output state."""
 
 from collections.abc import Callable
 import time
@@ -16,15 +16,15 @@ from .processes import DemoError
 from .recording import Recording
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-START_UP = 40.0  # [s] imports, compilation of the kernels and discovery on a slow machine
-ANSWER = 5.0  # [s]
+START_TIMEOUT = 40.0  # [s] imports, compiled kernels and discovery on a slow machine
+ANSWER_TIMEOUT = 5.0  # [s]
 
 
 class Client:
     """Calls the services of both processes and records the joint states."""
 
     def __init__(self, recording: Recording, check: Callable[[], None]) -> None:
-        """Connect; `check` is called while waiting and raises when a process has ended."""
+        """Connect; `check` is called while waiting, and raises if a process has ended."""
         self.recording = recording
         self.state: OutputState | None = None
         self._check = check
@@ -45,14 +45,14 @@ class Client:
         }
 
     def wait_until_ready(self) -> None:
-        """Wait until all endpoints are there and the node has said what its output does."""
+        """Wait for all services, joint states, and the state READY of the output."""
         for name, client in self._clients.items():
-            self.wait_for(client.service_is_ready, START_UP, f'the service {name}')
-        self.wait_for(lambda: len(self.recording) > 0, START_UP, 'joint states')
-        self.wait_for_state('READY', START_UP)
+            self.wait_for(client.service_is_ready, START_TIMEOUT, f'the service {name}')
+        self.wait_for(lambda: len(self.recording) > 0, START_TIMEOUT, 'joint states')
+        self.wait_for_state('READY', START_TIMEOUT)
 
     def wait_for(self, condition: Callable[[], bool], timeout: float, what: str) -> None:
-        """Spin until a condition holds, or raise DemoError after `timeout` seconds."""
+        """Spin until a condition holds; raise DemoError after `timeout` seconds."""
         end = time.monotonic() + timeout
         while not condition():
             if time.monotonic() > end:
@@ -61,7 +61,7 @@ class Client:
             self._executor.spin_once(timeout_sec=0.05)
 
     def wait_for_state(self, name: str, timeout: float) -> None:
-        """Wait for a state of the node's output; FAULT ends the waiting."""
+        """Wait for a state of the node's output; raise DemoError on FAULT."""
 
         def reached() -> bool:
             if self.state is not None and self.state.name == 'FAULT' != name:
@@ -71,21 +71,23 @@ class Client:
         self.wait_for(reached, timeout, f'the node to be {name}')
 
     def spin_for(self, seconds: float) -> None:
-        """Record for a time on the clock of the stamps."""
+        """Record for a duration [s] on the clock of the stamps."""
         end = self.recording.now + seconds
-        self.wait_for(lambda: self.recording.now >= end, 3 * seconds + ANSWER, 'joint states')
+        self.wait_for(
+            lambda: self.recording.now >= end, 3 * seconds + ANSWER_TIMEOUT, 'joint states'
+        )
 
     def call(self, name: str, request: Any) -> Any:
-        """Return the answer of a service, or raise DemoError if there is none or a refusal."""
-        answer = self._ask(name, request)
-        if not answer.success:
-            raise DemoError(f'{name} refused: {answer.message}')
-        return answer
+        """Return the response of a service; raise DemoError if it fails or does not come."""
+        response = self._call(name, request)
+        if not response.success:
+            raise DemoError(f'{name} refused: {response.message}')
+        return response
 
-    def _ask(self, name: str, request: Any) -> Any:
-        """Return the answer of a service, whatever it says."""
+    def _call(self, name: str, request: Any) -> Any:
+        """Return the response of a service."""
         future = self._clients[name].call_async(request)
-        self.wait_for(future.done, ANSWER, f'an answer of {name}')
+        self.wait_for(future.done, ANSWER_TIMEOUT, f'an answer of {name}')
         return future.result()
 
     def set_brakes(self, engaged: bool) -> None:
@@ -97,7 +99,7 @@ class Client:
         self.call('simulated_robot/reset', Trigger.Request())
 
     def push(self) -> str:
-        """Push the robot; return with what."""
+        """Push the robot; return the description of the push."""
         return self.call('simulated_robot/push', Trigger.Request()).message
 
     def enable(self, on: bool) -> None:
@@ -105,14 +107,14 @@ class Client:
         self.call('dynamics_node/enable', SetBool.Request(data=on))
 
     def mass_matrix(self) -> GetMassMatrix.Response:
-        """Return the mass matrix at the present position, as soon as the node can tell it."""
+        """Return the mass matrix at the current position, as soon as the node can compute it."""
         name, request = 'dynamics_node/get_mass_matrix', GetMassMatrix.Request()
-        end = time.monotonic() + START_UP
-        # Description and joint states reach the node some time after its services are there.
-        while not self._ask(name, request).success and time.monotonic() < end:
+        end = time.monotonic() + START_TIMEOUT
+        # Description and joint states reach the node after its services exist.
+        while not self._call(name, request).success and time.monotonic() < end:
             self.spin_for(0.1)
         return self.call(name, request)
 
     def _on_state(self, message: OutputState) -> None:
-        """Remember the newest state."""
+        """Store the newest state."""
         self.state = message

@@ -1,4 +1,4 @@
-"""What the demo prints."""
+"""Tables and logs that the demo prints."""
 
 import numpy as np
 from rich import box
@@ -10,7 +10,7 @@ from .story import FALL_TIME, MAX_DRIFT, MIN_FALL, MIN_PUSH, Outcome, WATCH_TIME
 
 def print_mass_matrix(console: Console, names: list[str], matrix: np.ndarray) -> None:
     """Print a mass matrix, shape (n, n), with the names of the joints."""
-    # Markup would take a unit in brackets for a style.
+    # Units without brackets, which are markup.
     console.print(
         '\nMass matrix D(q) at the start pose in kg m², kg m and kg, '
         'from /dynamics_node/get_mass_matrix:'
@@ -25,7 +25,7 @@ def print_mass_matrix(console: Console, names: list[str], matrix: np.ndarray) ->
 
 
 def print_outcome(console: Console, outcome: Outcome) -> None:
-    """Print the figures and what they were to be."""
+    """Print measured and expected displacements."""
     console.print('\nLargest joint displacement:')
     table = Table(box=box.SIMPLE_HEAD)
     for heading in ('', 'measured', 'expected', 'joint'):
@@ -44,25 +44,25 @@ def print_outcome(console: Console, outcome: Outcome) -> None:
 
 
 def print_logs(console: Console, tails: dict[str, list[str]]) -> None:
-    """Print the last lines of the processes' logs."""
+    """Print the last lines of each log."""
     for name, lines in tails.items():
         console.print(f'--- last lines of {name} ---', style='bold')
         console.print('\n'.join(lines) or '(it printed nothing)', markup=False, highlight=False)
 
 
 def _entry(value: float) -> str:
-    """Return an entry of a matrix, without the sign of a rounded zero."""
+    """Return a matrix entry as text; a rounded zero has no sign."""
     return f'{round(value, 3) + 0.0:.3f}'
 
 
 def _softest(outcome: Outcome, way: np.ndarray) -> str:
-    """Return the name of the turning joint that moved most."""
+    """Return the name of the revolute joint that moved most."""
     turning = np.where(outcome.recording.turning, way, -1.0)
     return outcome.recording.names[int(np.argmax(turning))]
 
 
 def _sliding(outcome: Outcome) -> str:
-    """Return a line about the joints that slide, which degrees do not measure."""
+    """Return a line about prismatic joints, which degrees do not measure."""
     slides = ~outcome.recording.turning
     drift = max(np.max(outcome.drift[slides]), np.max(outcome.drift_after_push[slides]))
     return f'Joints that slide drifted at most {drift:.2f} mm and are not part of the degrees.'

@@ -1,11 +1,11 @@
 """
-The engine of the simulated robot: MuJoCo, joint efforts in, joint states out, and no ROS.
+The physics of the simulated robot: MuJoCo, from joint efforts to joint states. No ROS.
 
-It knows nothing of the node that it is used to judge, neither its URDF reader nor its dynamics.
+Independent of the node that it is used to judge: another URDF reader, other dynamics.
 
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import mujoco
 import numpy as np
@@ -13,6 +13,10 @@ import numpy as np
 from .mujoco_model import compile_model, last_link, mimic_map, TIME_STEP
 from .robot_text import movable_joints, MovableJoint
 
+# Of the velocity limit: a glide must not trip a watchdog on the joint states.
+GLIDE_SPEED = 0.7
+FALLBACK_VELOCITY = 1.0  # [rad/s or m/s] for a joint without velocity limit
+MIN_GLIDE_TIME = 0.2  # [s]
 UNSTABLE = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
     mujoco.mjtWarning.mjWARN_BADQVEL,
@@ -28,17 +32,33 @@ class MujocoArm:
     """
     A robot in MuJoCo with brakes.
 
-    Arrays named `driven` hold one value per joint that mimics none, all others one per movable
-    joint; both in the order of the URDF document, in rad or m, per s, and N m or N.
+    Arrays named `driven` hold one value per joint without a mimic tag, all others one per movable
+    joint; both in the order of the URDF, in rad or m, per s, and N m or N.
 
     """
 
-    def __init__(self, urdf_text: str) -> None:
-        """Build the robot; it stands at its neutral position with the brakes engaged."""
+    def __init__(
+        self, urdf_text: str, extend: Callable[[mujoco.MjSpec], None] | None = None
+    ) -> None:
+        """
+        Build the robot, at its neutral position with the brakes engaged.
+
+        Parameters
+        ----------
+        urdf_text : str
+        extend : callable, optional
+            Adds to the MuJoCo model before it is compiled.
+
+        Raises
+        ------
+        RobotRefusedError
+            If the robot cannot be simulated.
+
+        """
         self.joints = movable_joints(urdf_text)
         self.driven = [joint for joint in self.joints if joint.mimic is None]
         self.mimic_matrix, self.mimic_offset = mimic_map(self.joints)
-        self.model = compile_model(urdf_text, self.joints)
+        self.model = compile_model(urdf_text, self.joints, extend)
         self.data = mujoco.MjData(self.model)
         self.braked = True
         self.last_link = last_link(self.model)
@@ -58,7 +78,7 @@ class MujocoArm:
 
     @property
     def driven_names(self) -> list[str]:
-        """Return the names of the joints that take an effort."""
+        """Return the names of the driven joints."""
         return [joint.name for joint in self.driven]
 
     @property
@@ -73,7 +93,7 @@ class MujocoArm:
 
     @property
     def effort(self) -> np.ndarray:
-        """Return the efforts of the motors, shape (n,) [N m or N]; 0 for a joint that mimics."""
+        """Return the motor efforts, shape (n,) [N m or N]; 0 for a mimic joint."""
         return self.data.qfrc_applied[self._dof]
 
     @property
@@ -83,24 +103,24 @@ class MujocoArm:
 
     @property
     def gliding(self) -> bool:
-        """Return whether the arm is on its way to another pose (see `glide_to`)."""
+        """Return whether a motion of `glide_to` is in progress."""
         return self._glide is not None
 
     def place(self, driven: np.ndarray) -> None:
-        """Put the arm at a position at once, at rest, with the brakes engaged, no efforts."""
+        """Set the position, at rest, with the brakes engaged and without efforts."""
         mujoco.mj_resetData(self.model, self.data)
         self.braked, self._glide, self._push_ends = True, None, 0.0
         self._move_to(driven)
 
     def glide_to(self, driven: np.ndarray) -> float:
-        """Engage the brakes, drop the efforts and travel to a position; return how long [s]."""
+        """Engage the brakes, clear the efforts, move to a position; return the duration [s]."""
         self.set_brakes(True)
         self.data.qfrc_applied[:] = 0.0
         self._glide = Glide(self.driven_position, driven, self.driven, self.data.time)
         return self._glide.duration
 
     def set_brakes(self, engaged: bool) -> None:
-        """Hold all joints where they are, or let them go. A brake stops the arm at once."""
+        """Engage or release the brakes of all joints; engaged, they stop the arm at once."""
         self.braked = engaged
         if engaged:
             self._end_push()
@@ -108,11 +128,11 @@ class MujocoArm:
             mujoco.mj_forward(self.model, self.data)
 
     def set_effort(self, driven: Sequence[float]) -> None:
-        """Apply joint efforts, shape (n_driven,) [N m or N], from now on and for ever."""
+        """Apply joint efforts, shape (n_driven,) [N m or N], until the next call."""
         self.data.qfrc_applied[self._dof[self._driven_rows]] = driven
 
     def push(self, force: Sequence[float], duration: float) -> None:
-        """Apply a force [N] in the base frame at the last link's center of mass for a time [s]."""
+        """Apply a force [N, base frame] at the last link's center of mass for a duration [s]."""
         self._push_force = np.array(force, dtype=float)
         self._push_ends = self.data.time + duration
 
@@ -123,14 +143,14 @@ class MujocoArm:
         Raises
         ------
         UnstableError
-            If absurd efforts have made the simulation unstable. The arm is then back where it
-            was, on its brakes.
+            If excessive efforts have made the simulation unstable. The arm is then back at its
+            previous position, with the brakes engaged.
 
         """
         before = self.driven_position
         for _ in range(count):
             if self._push_ends:
-                # Anew for every step: the viewer writes its mouse's force here, or zero.
+                # For each step: the viewer overwrites it with the force of the mouse, or zero.
                 self.data.xfrc_applied[self.last_link, :3] = self._push_force
             if self.braked:
                 self._step_braked()
@@ -138,7 +158,7 @@ class MujocoArm:
                 mujoco.mj_step(self.model, self.data)
             if self._push_ends and self.data.time >= self._push_ends:
                 self._end_push()
-        # MuJoCo itself would go on from its neutral position, as if nothing had happened.
+        # MuJoCo would continue from its neutral position without an error.
         if any(self.data.warning[kind].number for kind in UNSTABLE):
             self.place(before)
             raise UnstableError(
@@ -193,7 +213,7 @@ class MujocoArm:
         return self.model.dof_frictionloss[self._dof]
 
     def _step_braked(self) -> None:
-        """Advance the time; move only if the arm is gliding to another pose."""
+        """Advance the time; move only along a glide."""
         self.data.time += TIME_STEP
         if self._glide is None:
             return
@@ -205,24 +225,19 @@ class MujocoArm:
             self.set_brakes(True)
 
     def _move_to(self, driven: np.ndarray) -> None:
-        """Set the position without any motion."""
+        """Set the position, at rest."""
         self._pose(self.data, driven)
 
     def _pose(self, data: mujoco.MjData, driven: np.ndarray) -> None:
-        """Set a position at rest in `data` and compute what follows from it."""
+        """Set a position at rest in `data` and compute the quantities that depend on it."""
         data.qpos[self._qpos] = self.mimic_matrix @ driven + self.mimic_offset
         data.qvel[:] = 0.0
         mujoco.mj_forward(self.model, data)
 
     def _end_push(self) -> None:
-        """Take the external force away."""
+        """Remove the external force."""
         self.data.xfrc_applied[self.last_link, :3] = 0.0
         self._push_ends = 0.0
-
-
-SHARE_OF_LIMIT = 0.7  # of the velocity limit: a watchdog on the joint states must not trip
-FALLBACK_VELOCITY = 1.0  # [rad/s or m/s] where the URDF states no limit
-SHORTEST = 0.2  # [s]
 
 
 class Glide:
@@ -238,8 +253,8 @@ class Glide:
     ) -> None:
         """Plan from `start` to `goal` [rad or m] within the velocity limits, from `now` [s]."""
         limits = np.array([joint.velocity or FALLBACK_VELOCITY for joint in joints])
-        slowest = np.max(np.pi / 2 * np.abs(goal - start) / (SHARE_OF_LIMIT * limits))
-        self.duration = max(float(slowest), SHORTEST)
+        slowest = np.max(np.pi / 2 * np.abs(goal - start) / (GLIDE_SPEED * limits))
+        self.duration = max(float(slowest), MIN_GLIDE_TIME)
         self.end = now + self.duration
         self._start, self._way = start, goal - start
 

@@ -1,5 +1,6 @@
 """From a URDF text to a compiled MuJoCo model."""
 
+from collections.abc import Callable
 import logging
 
 import mujoco
@@ -7,28 +8,49 @@ import numpy as np
 
 from .robot_text import Mimic, MovableJoint, mujoco_text, RobotRefusedError
 
-TIME_STEP = 0.0005  # [s] two to four steps per published state keep the integration error small
+TIME_STEP = 0.0005  # [s] two to four steps per joint state keep the integration error small
 
-# MuJoCo's own handler writes a file MUJOCO_LOG.TXT into the user's current directory.
+# MuJoCo's own handler writes MUJOCO_LOG.TXT into the current directory.
 mujoco.set_mju_user_warning(logging.getLogger('mujoco').debug)
 
 
-def compile_model(text: str, joints: list[MovableJoint]) -> mujoco.MjModel:
-    """Return the MuJoCo model of a robot, or raise RobotRefusedError with MuJoCo's reason."""
+def compile_model(
+    text: str, joints: list[MovableJoint], extend: Callable[[mujoco.MjSpec], None] | None = None
+) -> mujoco.MjModel:
+    """
+    Return the MuJoCo model of a robot.
+
+    Parameters
+    ----------
+    text : str
+        URDF.
+    joints : list of MovableJoint
+        Its movable joints.
+    extend : callable, optional
+        Adds to the model before it is compiled.
+
+    Raises
+    ------
+    RobotRefusedError
+        With MuJoCo's reason.
+
+    """
     try:
         spec = mujoco.MjSpec.from_string(mujoco_text(text))
         for joint in joints:
             if joint.mimic is not None:
                 _couple(spec, joint.name, joint.mimic)
         spec.option.timestep = TIME_STEP
+        if extend is not None:
+            extend(spec)
         return spec.compile()
     except ValueError as error:
         if isinstance(error, RobotRefusedError):
             raise
         reason = ' '.join(str(error).split())
         raise RobotRefusedError(
-            f'MuJoCo cannot simulate this robot: {reason}; what is wrong with '
-            'its links says python -m dynamics_node.report'
+            f'MuJoCo cannot simulate this robot: {reason}; python -m dynamics_node.report '
+            'lists the defects of its links'
         ) from error
 
 
@@ -36,7 +58,7 @@ def mimic_map(joints: list[MovableJoint]) -> tuple[np.ndarray, np.ndarray]:
     """
     Return B (n_all, n_driven) and b (n_all,) such that all positions = B @ driven + b.
 
-    Both follow the order of `joints`; the driven ones are those that mimic nothing.
+    Both follow the order of `joints`; driven joints are those without a mimic tag.
 
     """
     by_name = {joint.name: joint for joint in joints}
@@ -65,7 +87,7 @@ def last_link(model: mujoco.MjModel) -> int:
 
 
 def _couple(spec: mujoco.MjSpec, name: str, mimic: Mimic) -> None:
-    """Make one joint follow another by a constraint about as stiff as the time step allows."""
+    """Couple a mimic joint by a constraint as stiff as the time step allows."""
     equality = spec.add_equality()
     equality.type = mujoco.mjtEq.mjEQ_JOINT
     equality.name1, equality.name2 = name, mimic.source
@@ -75,7 +97,7 @@ def _couple(spec: mujoco.MjSpec, name: str, mimic: Mimic) -> None:
 
 
 def _resolve(joint: MovableJoint, by_name: dict[str, MovableJoint]) -> tuple[str, float, float]:
-    """Return the driven joint that one follows in the end, with multiplier and offset."""
+    """Return the driven joint at the end of a chain of mimic tags, with multiplier and offset."""
     name, multiplier, offset = joint.name, 1.0, 0.0
     for _ in by_name:
         mimic = by_name[name].mimic

@@ -1,4 +1,4 @@
-"""demo.png: where the joints went, what the motors gave, and how the arm stood."""
+"""demo.png: joint displacements, motor efforts and poses of a run."""
 
 from pathlib import Path
 from typing import Any
@@ -26,8 +26,8 @@ POSE_COLORS = {
     'held': '#2b8a3e',
     'after the push': '#c98a00',
 }
-LEAD_IN = 0.3  # [s] shown before the first phase
-NARROW = 0.12  # a phase shorter than this share of the run has no room for its name above it
+LEAD_IN = 0.3  # [s] before the first phase
+NARROW = 0.12  # share of the run; the name of a shorter phase stands inside it, upright
 JOINT_COLORS = [
     '#1f4e9e',
     '#d1495b',
@@ -57,23 +57,23 @@ def draw(outcome: Outcome, arm: MujocoArm, name: str, path: Path) -> None:
 
 
 def _title(outcome: Outcome, name: str) -> str:
-    """Return the headline: the four figures."""
+    """Return the headline: the four displacements."""
     return (
         f'{name}: falls {outcome.largest(outcome.fall):.0f}° in {FALL_TIME:.0f} s '
         'without the node, '
         f'drifts {_small(outcome.largest(outcome.drift))} in {outcome.hold:.0f} s with it\n'
-        f'pushed by {outcome.largest(outcome.pushed):.0f}°, it stays there and drifts '
+        f'pushed, it yields {outcome.largest(outcome.pushed):.0f}°, stays there and drifts '
         f'{_small(outcome.largest(outcome.drift_after_push))} in {WATCH_TIME:.0f} s'
     )
 
 
 def _small(degrees: float) -> str:
-    """Return a small angle; nobody believes a plain zero."""
+    """Return a small angle; a rounded zero would look like a missing value."""
     return f'{degrees:.2f}°' if degrees >= 0.01 else 'less than 0.01°'
 
 
 def _draw_poses(axes: list[Any], outcome: Outcome, arm: MujocoArm) -> None:
-    """Draw one stick figure per pose, all in one scale, seen from the side."""
+    """Draw one stick figure per pose, from the side, all at the same scale."""
     sticks = {pose: arm.skeleton(position) for pose, position in outcome.poses.items()}
     titles = {
         'start': 'start',
@@ -110,52 +110,47 @@ def _draw_stick(axis: Any, stick: np.ndarray, color: str) -> None:
 
 
 def _side(tip: np.ndarray) -> np.ndarray:
-    """Return the horizontal direction, shape (3,), that the arm points to."""
+    """Return the horizontal direction of the arm, shape (3,)."""
     radius = np.hypot(tip[0], tip[1])
     return np.array([tip[0], tip[1], 0.0]) / radius if radius > 1e-3 else np.array([1.0, 0, 0])
 
 
 def _draw_displacement(axis: Any, outcome: Outcome) -> None:
-    """Draw how far every joint is from its start."""
+    """Draw the displacement of each joint from its start."""
     recording = outcome.recording
-    times, way = (
-        recording.times(),
-        recording.natural(recording.positions() - outcome.poses['start']),
-    )
+    times = recording.times() - recording.phases[0].start
+    way = recording.natural(recording.positions() - outcome.poses['start'])
     for row, name in enumerate(recording.names):
         unit = '' if recording.turning[row] else ' [mm]'
         axis.plot(times, way[:, row], lw=1.8, color=_color(row), label=name + unit)
     _shade(axis, recording.phases, wide=True)
-    axis.set_ylabel('displacement [°]')
+    axis.set_ylabel('displacement [° or mm]')
     axis.legend(fontsize=8, loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False)
     axis.grid(alpha=0.25)
     axis.tick_params(labelbottom=False)
 
 
 def _draw_effort(axis: Any, outcome: Outcome) -> None:
-    """Draw what the motors gave."""
+    """Draw the motor efforts."""
     recording = outcome.recording
-    times, efforts = recording.times(), recording.efforts()
+    times, efforts = recording.times() - recording.phases[0].start, recording.efforts()
     for row in range(len(recording.names)):
         axis.plot(times, efforts[:, row], lw=1.5, color=_color(row))
     _shade(axis, recording.phases, wide=False)
-    axis.set(
-        ylabel='motor effort [N m]',
-        xlabel='time [s]',
-        xlim=(recording.phases[0].start - LEAD_IN, times[-1]),
-    )
+    axis.set(ylabel='motor effort [N m or N]', xlabel='time [s]', xlim=(-LEAD_IN, times[-1]))
     axis.grid(alpha=0.25)
 
 
 def _shade(axis: Any, phases: list[Phase], wide: bool) -> None:
-    """Color the background by phase, and name the wide phases above or the narrow ones inside."""
-    total = phases[-1].end - phases[0].start
+    """Color the background by phase; name wide phases above it, narrow ones inside."""
+    origin, total = phases[0].start, phases[-1].end - phases[0].start
     for phase in phases:
-        axis.axvspan(phase.start, phase.end, color=PHASE_COLORS[phase.name], alpha=0.55, lw=0)
-        if wide != (phase.end - phase.start > NARROW * total):
+        start, end = phase.start - origin, phase.end - origin
+        axis.axvspan(start, end, color=PHASE_COLORS[phase.name], alpha=0.55, lw=0)
+        if wide != (end - start > NARROW * total):
             continue
         axis.text(
-            (phase.start + phase.end) / 2,
+            (start + end) / 2,
             1.02 if wide else 0.04,
             phase.name,
             fontsize=9,

@@ -1,4 +1,4 @@
-"""The demo's child processes: started with a log each, and ended whatever happens."""
+"""The child processes of the demo, each with a log, and the URDF files that it starts with."""
 
 import os
 from pathlib import Path
@@ -8,19 +8,22 @@ import sys
 import tempfile
 from types import TracebackType
 
-PATIENCE = 5.0  # [s] for a process to end after SIGINT; the node takes up to 3 s to ramp down
-TAIL = 15  # lines of a log that are shown after a failure
+from ament_index_python.packages import get_package_share_directory, PackageNotFoundError
+
+from .robot_text import RobotRefusedError
+
+END_TIMEOUT = 5.0  # [s] after SIGINT; the node takes up to 3 s to ramp down
+TAIL = 15  # lines of each log printed after a failure
 
 
 class DemoError(RuntimeError):
-    """The demo did not go as it should; the message says what happened, in one sentence."""
+    """The demo failed; the message states the reason in one sentence."""
 
 
 class Processes:
-    """A context that starts Python modules as processes and ends them when it is left."""
+    """A context that starts Python modules as processes, and ends them at its exit."""
 
     def __init__(self) -> None:
-        """Start nothing yet."""
         self._running: dict[str, subprocess.Popen] = {}
         self._folder = tempfile.TemporaryDirectory(prefix='dynamics_node_demo_')
 
@@ -34,7 +37,7 @@ class Processes:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """End all processes, the last started first, and drop their logs."""
+        """End all processes, the last started first, and delete their logs."""
         for name in reversed(list(self._running)):
             self._end(self._running[name])
         self._folder.cleanup()
@@ -42,9 +45,8 @@ class Processes:
     def start(self, name: str, module: str, *arguments: str) -> None:
         """Start `python -m module arguments` under a name."""
         with self._log(name).open('wb') as log:
-            # A session of its own: Ctrl-C in the terminal must reach the demo alone, which then
-            # ends the processes in the right order. Unbuffered: their logs are read while they
-            # run.
+            # A separate session: Ctrl-C in the terminal reaches the demo alone, which then ends
+            # the processes in the right order.
             self._running[name] = subprocess.Popen(
                 [sys.executable, '-m', module, *arguments],
                 stdin=subprocess.DEVNULL,
@@ -55,7 +57,7 @@ class Processes:
             )
 
     def environment(self) -> dict[str, str]:
-        """Return the environment of the processes."""
+        """Return the environment of the processes: unbuffered, so that their logs are current."""
         return dict(os.environ, PYTHONUNBUFFERED='1')
 
     def check(self) -> None:
@@ -67,11 +69,11 @@ class Processes:
                 )
 
     def tails(self) -> dict[str, list[str]]:
-        """Return the last lines of every process's log."""
+        """Return the last lines of each log."""
         return {name: self.lines(name)[-TAIL:] for name in self._running}
 
     def lines(self, name: str) -> list[str]:
-        """Return what a process has printed until now."""
+        """Return the lines that a process has printed so far."""
         return self._log(name).read_text(encoding='utf-8', errors='replace').splitlines()
 
     def _log(self, name: str) -> Path:
@@ -80,11 +82,33 @@ class Processes:
 
     @staticmethod
     def _end(process: subprocess.Popen) -> None:
-        """Ask a process to end as Ctrl-C does, and make it end if it does not."""
+        """End a process as Ctrl-C does; kill it after END_TIMEOUT."""
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
         try:
-            process.wait(PATIENCE)
+            process.wait(END_TIMEOUT)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
+
+
+ARM7 = Path('config') / 'robots' / 'arm7.urdf'
+
+
+def arm7_path() -> Path:
+    """Return the path of arm7.urdf."""
+    try:
+        installed = Path(get_package_share_directory('dynamics_node')) / ARM7
+    except PackageNotFoundError:
+        installed = None
+    if installed is not None and installed.is_file():
+        return installed
+    return Path(__file__).resolve().parents[2] / ARM7
+
+
+def read_robot(path: Path) -> str:
+    """Return the text of a URDF file."""
+    try:
+        return path.read_text(encoding='utf-8')
+    except (OSError, UnicodeDecodeError) as error:
+        raise RobotRefusedError(f'cannot read the robot description {path}: {error}') from error

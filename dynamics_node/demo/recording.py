@@ -1,4 +1,4 @@
-"""All joint states of a run, and the phases of the story on their time line."""
+"""The joint states of a run, and its phases."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from sensor_msgs.msg import JointState
 
 @dataclass
 class Phase:
-    """A named stretch of the time line, in s since the first joint state."""
+    """A named interval, in s since the first joint state."""
 
     name: str
     start: float
@@ -19,12 +19,12 @@ class Recording:
     """
     Joint states in the order of `names`, by the time of their stamps.
 
-    `turning` says which of the joints turn: displacements are judged on those, in degrees.
+    `turning` marks the revolute joints: displacements are judged on those, in degrees.
 
     """
 
     def __init__(self, names: list[str], turning: list[bool]) -> None:
-        """Record the joints `names`; messages may hold others too, in any order."""
+        """Record the joints `names`; messages may contain others, in any order."""
         self.names = names
         self.turning = np.array(turning)
         self.phases: list[Phase] = []
@@ -32,11 +32,11 @@ class Recording:
         self._messages: list[JointState] = []
 
     def __len__(self) -> int:
-        """Return how many joint states came."""
+        """Return the number of joint states."""
         return len(self._messages)
 
     def add(self, message: JointState) -> None:
-        """Take a joint state."""
+        """Add a joint state."""
         if self._rows is None:
             self._rows = [message.name.index(name) for name in self.names]
         self._messages.append(message)
@@ -70,9 +70,9 @@ class Recording:
 
     def displacement(self, reference: np.ndarray, start: float, end: float) -> np.ndarray:
         """
-        Return the largest displacement of every joint from a reference within a time.
+        Return the largest displacement of each joint from a reference within an interval.
 
-        Shape (n,), in degrees for a joint that turns and in mm for one that slides.
+        Shape (n,), in degrees for a revolute joint and in mm for a prismatic one.
 
         """
         times = self.times()

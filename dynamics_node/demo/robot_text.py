@@ -1,7 +1,7 @@
 """
-What the simulator reads from a URDF text itself, with nothing but the standard library.
+The simulator's own reader of URDF texts, with the standard library alone.
 
-The simulation judges the node, so it shares no code with the node's own URDF reader.
+The simulation judges the node, so it shares no code with the node's URDF reader.
 
 """
 
@@ -15,12 +15,12 @@ ONE_DEGREE_OF_FREEDOM = ('revolute', 'continuous', 'prismatic')
 
 
 class RobotRefusedError(ValueError):
-    """The simulator cannot run this robot; the message says why in one sentence."""
+    """The simulator cannot run this robot; the message states the reason in one sentence."""
 
 
 @dataclass(frozen=True)
 class Mimic:
-    """A joint follows another one: position = multiplier * source + offset."""
+    """A mimic tag: position = multiplier * source + offset."""
 
     source: str
     multiplier: float
@@ -32,8 +32,8 @@ class MovableJoint:
     """
     A joint with one degree of freedom.
 
-    Positions in rad or m, velocity per s, effort in N m or N; nothing stated in the URDF means
-    infinite for `lower` and `upper`, and 0.0 for `effort`, `velocity` and `damping`.
+    Positions in rad or m, velocity per s, effort in N m or N. Defaults where the URDF states no
+    value: infinite `lower` and `upper`, 0.0 for `effort`, `velocity` and `damping`.
 
     """
 
@@ -48,13 +48,13 @@ class MovableJoint:
 
     @property
     def turns(self) -> bool:
-        """True if the joint turns (rad), False if it slides (m)."""
+        """True for a revolute or continuous joint (rad), False for a prismatic one (m)."""
         return self.kind != 'prismatic'
 
 
 def parse(text: str) -> ET.Element:
     """Return the <robot> element of a URDF text."""
-    # Without name spaces, as MuJoCo reads it: URDFs use prefixes that nothing declares.
+    # Without name spaces, as MuJoCo reads it: URDFs use undeclared prefixes.
     builder = ET.TreeBuilder()
     parser = expat.ParserCreate(encoding='utf-8')
     parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
@@ -77,18 +77,18 @@ def movable_joints(text: str) -> list[MovableJoint]:
                 f'joint {element.get("name")!r} is {element.get("type")}: the '
                 'simulated robot has joints of one degree of freedom only'
             )
-    found = [_joint(e) for e in elements if e.get('type') in ONE_DEGREE_OF_FREEDOM]
-    if not found:
+    joints = [_joint(e) for e in elements if e.get('type') in ONE_DEGREE_OF_FREEDOM]
+    if not joints:
         raise RobotRefusedError('the robot has no movable joint: there is nothing to simulate')
-    return found
+    return joints
 
 
 def mujoco_text(text: str) -> str:
     """
-    Return the URDF text as MuJoCo is to read it.
+    Return the URDF text for MuJoCo.
 
-    Dropped: collision shapes (the arm moves freely), meshes (their files are not needed for the
-    motion) and mimic tags (`mujoco_model` couples these joints itself). Inertia is the file's.
+    Removed: collision shapes (the arm moves freely), meshes (the motion does not need their
+    files) and mimic tags (`mujoco_model` couples these joints). The inertia is the file's.
 
     """
     root = parse(text)
@@ -111,7 +111,7 @@ def mujoco_text(text: str) -> str:
 
 
 def _rename_world(root: ET.Element) -> None:
-    """Give a link named 'world' another name: MuJoCo takes it for the ground, wherever it is."""
+    """Rename a link called 'world', which MuJoCo takes for the ground."""
     names = {link.get('name') for link in root.findall('link')}
     free = next(name for i in itertools.count() if (name := f'world_link_{i}') not in names)
     for tag, key in (('link', 'name'), ('joint/parent', 'link'), ('joint/child', 'link')):
@@ -121,14 +121,14 @@ def _rename_world(root: ET.Element) -> None:
 
 
 def robot_name(text: str) -> str:
-    """Return the name that the URDF gives the robot, or 'robot'."""
+    """Return the robot's name in the URDF, or 'robot'."""
     return parse(text).get('name') or 'robot'
 
 
 def _joint(element: ET.Element) -> MovableJoint:
     """Return one <joint> element as a MovableJoint."""
     limit = _attributes(element.find('limit'))
-    # URDF's own default is 0 for both bounds; a range of nothing is no limit, says MuJoCo too.
+    # URDF's default is 0 for both bounds. As in MuJoCo, an empty range is no limit.
     lower, upper = limit.get('lower', 0.0), limit.get('upper', 0.0)
     bounded = element.get('type') != 'continuous' and lower < upper
     return MovableJoint(
@@ -154,7 +154,7 @@ def _mimic(element: ET.Element | None) -> Mimic | None:
 
 
 def _attributes(element: ET.Element | None) -> dict[str, float]:
-    """Return those attributes of an element that are numbers."""
+    """Return the numeric attributes of an element."""
     values = {}
     for key, text in (element.attrib if element is not None else {}).items():
         try:

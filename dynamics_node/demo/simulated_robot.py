@@ -1,20 +1,18 @@
 """
-A simulated robot that looks to ROS like one behind ros2_control, with an effort interface.
+A simulated robot with the ROS interface of an arm behind ros2_control, driven by efforts.
 
-It stands for joint_state_broadcaster and forward_command_controller, with their habits: joint
-states in alphabetical order, the last command held for ever, nothing clamped.
+It behaves like joint_state_broadcaster and forward_command_controller: joint states in
+alphabetical order, the last command stays in force, commands are not clamped.
 
 """
 
 import math
-import os
 from pathlib import Path
 import signal
 import sys
 import time
 from typing import Any
 
-import mujoco
 import rclpy
 from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
@@ -28,24 +26,24 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import SetBool, Trigger
 
-from .files import arm7_path, read_robot
 from .missing_values import add_missing_damping
 from .mujoco_arm import MujocoArm, UnstableError
 from .mujoco_model import TIME_STEP
-from .poses import start_pose
-from .push import plan_push
+from .poses import plan_push, start_pose
+from .processes import arm7_path, read_robot
 from .robot_text import robot_name, RobotRefusedError
 from .timing import ClockOffset, Pacer
+from .viewer import add_scenery, check_display, open_viewer
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 VIEWER_PERIOD = 1 / 30  # [s]
 
 
 class SimulatedRobot(Node):
-    """The driver node: MuJoCo on one side, topics and services on the other."""
+    """Runs the simulation in real time, with topics and services."""
 
     def __init__(self, view: bool = False) -> None:
-        """Load the robot, engage the brakes, start to publish."""
+        """Load the robot, engage the brakes, start publishing."""
         super().__init__('simulated_robot')
         self._declare_parameters(view)
         text = read_robot(Path(self._value('robot_description_file') or arm7_path()))
@@ -66,7 +64,7 @@ class SimulatedRobot(Node):
         )
 
     def _declare_parameters(self, view: bool) -> None:
-        """Declare the parameters; those without a value here are empty arrays."""
+        """Declare the parameters; arrays without a default are empty."""
         self.declare_parameter('robot_description_file', '')
         self.declare_parameter('rate', 500.0)
         self.declare_parameter('view', view)
@@ -76,13 +74,16 @@ class SimulatedRobot(Node):
         self.declare_parameter('joints', Parameter.Type.STRING_ARRAY)
 
     def _value(self, name: str) -> Any:
-        """Return a parameter's value, an empty list for an array that was not given."""
+        """Return a parameter's value; an empty list for an unset array."""
         value = self.get_parameter_or(name, None)
         return [] if value is None or value.value is None else value.value
 
     def _build(self, text: str) -> MujocoArm:
-        """Return the robot, and say aloud where its URDF was added to."""
-        arm = MujocoArm(text)
+        """Return the robot; log damping that its URDF lacks."""
+        is_viewed = self._value('view')
+        if is_viewed:
+            check_display()
+        arm = MujocoArm(text, add_scenery if is_viewed else None)
         added = add_missing_damping(arm)
         if added:
             self.get_logger().warning(
@@ -92,7 +93,7 @@ class SimulatedRobot(Node):
         return arm
 
     def _start_pose(self, text: str) -> Any:
-        """Return the start pose: the parameter's, or one that fits the robot."""
+        """Return the start pose: the parameter's, or one chosen for the robot."""
         pose = self._value('start_pose')
         if not len(pose):
             return start_pose(self.arm, robot_name(text))
@@ -105,7 +106,7 @@ class SimulatedRobot(Node):
         return list(pose)
 
     def _rows_of(self, joints: list[str]) -> list[int]:
-        """Return the place of every commanded joint among the driven ones."""
+        """Return the row of each commanded joint among the driven ones."""
         names = self.arm.driven_names
         wrong = [joint for joint in joints if joint not in names]
         if wrong or len(set(joints)) != len(joints):
@@ -135,17 +136,15 @@ class SimulatedRobot(Node):
         rate = self._value('rate')
         if not 1.0 <= rate <= 1000.0:
             raise RobotRefusedError(f'rate: expected 1 to 1000 Hz, got {rate}')
-        # Steady, so that neither a clock correction nor a paused /clock stops the physics.
+        # Steady: a clock correction or a paused /clock does not stop the physics.
         self.create_timer(1.0 / rate, self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _open_viewer(self) -> Any | None:
-        """Return the viewer if it is wanted."""
-        if not self._value('view'):
-            return None
-        return open_viewer(self.arm.model, self.arm.data)
+        """Return the viewer if the parameter asks for it."""
+        return open_viewer(self.arm) if self._value('view') else None
 
     def _tick(self) -> None:
-        """Advance to the present and publish."""
+        """Advance the simulation to the current time and publish."""
         now = time.monotonic()
         steps = self._pacer.steps_due(now)
         try:
@@ -171,15 +170,15 @@ class SimulatedRobot(Node):
         """
         Return the time of the simulated state, not that of its publication.
 
-        Whoever derives accelerations or momenta from the states needs the time that has passed
-        for the arm: half a millisecond too much is a quarter of what is between two states.
+        Accelerations and momenta derived from the states need the arm's own time: an error of
+        half a millisecond is a quarter of the time between two states.
 
         """
         nanoseconds = round(self._pacer.simulated_to * 1e9) + self._clock_offset.now()
         return Time(nanoseconds=nanoseconds, clock_type=self.get_clock().clock_type)
 
     def _on_command(self, message: Float64MultiArray) -> None:
-        """Take a command and hold it until the next one."""
+        """Apply a command until the next one."""
         command, wanted = message.data, len(self._command_rows)
         if len(command) != wanted or not all(map(math.isfinite, command)):
             self.get_logger().error(
@@ -207,14 +206,14 @@ class SimulatedRobot(Node):
         return response
 
     def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Set out for the start pose, at a speed that a robot can travel."""
+        """Start a motion to the start pose, within the velocity limits."""
         duration = self.arm.glide_to(self._start)
         response.success = True
         response.message = f'brakes engaged, at the start pose in {duration:.1f} s'
         return response
 
     def _on_push(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Push the last link for a moment."""
+        """Push the last link."""
         if self.arm.braked:
             response.message = 'the brakes are engaged; release them with ~/set_brakes first'
             return response
@@ -229,29 +228,29 @@ class SimulatedRobot(Node):
         return response
 
     def close(self) -> None:
-        """Close the viewer, if there is one."""
+        """Close the viewer."""
         if self._viewer is not None:
             self._viewer.close()
 
 
 class StopRequest:
-    """Remembers that SIGINT or SIGTERM came: the loop ends by itself and the exit code is 0."""
+    """Notes SIGINT or SIGTERM: the main loop then ends, with exit code 0."""
 
     def __init__(self) -> None:
-        """Take the two signals over from Python and from rclpy."""
+        """Replace the signal handlers of Python."""
         self.came = False
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._on_signal)
 
     def _on_signal(self, number: int, frame: Any) -> None:
-        """Remember; a second one, as Ctrl-C and launch send it, must not cut the end short."""
+        """Note the first signal; ignore the second one that launch sends after Ctrl-C."""
         self.came = True
         for other in (signal.SIGINT, signal.SIGTERM):
             signal.signal(other, signal.SIG_IGN)
 
 
 def main(args: list[str] | None = None) -> int:
-    """Run the simulated robot until it is told to stop; return the exit code."""
+    """Run the simulated robot until SIGINT or SIGTERM; return the exit code."""
     stop = StopRequest()
     arguments = sys.argv if args is None else args
     rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
@@ -268,19 +267,6 @@ def main(args: list[str] | None = None) -> int:
     finally:
         rclpy.try_shutdown()
     return 0
-
-
-def open_viewer(model: mujoco.MjModel, data: mujoco.MjData) -> Any:
-    """Return a passive viewer of a running simulation, with sync() and close()."""
-    on_linux = sys.platform.startswith('linux')
-    if on_linux and not (os.environ.get('DISPLAY') or os.environ.get('WAYLAND_DISPLAY')):
-        raise RobotRefusedError(
-            'the viewer needs a display, and neither DISPLAY nor WAYLAND_DISPLAY is set; run '
-            'without VIEW=1 or --view'
-        )
-    from mujoco import viewer  # imports GLFW, which complains where there is no display
-
-    return viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False)
 
 
 if __name__ == '__main__':

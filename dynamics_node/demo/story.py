@@ -1,4 +1,4 @@
-"""The demo's sequence: fall, hold, push, hold there; what is measured on the way."""
+"""The sequence of the demo: fall, hold, push, hold; and its measurements."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,9 +10,9 @@ from .client import Client
 from .processes import DemoError
 from .recording import Phase, Recording
 
-FALL_TIME = 1.0  # [s] as all durations on the clock of the joint states' stamps
+FALL_TIME = 1.0  # [s] on the clock of the stamps, as all durations here
 WATCH_TIME = 3.0
-AT_REST = np.radians(0.2)  # [rad/s] (a sliding joint is slower than that in m/s, too)
+AT_REST = np.radians(0.2)  # [rad/s, for a prismatic joint m/s]
 REST_TIME = 0.2  # [s] below that speed
 REST_TIMEOUT = 20.0  # [s]
 TRAVEL_TIMEOUT = 30.0  # [s]
@@ -23,10 +23,11 @@ MIN_FALL, MAX_DRIFT, MIN_PUSH = 20.0, 1.0, 3.0  # [deg]
 @dataclass
 class Outcome:
     """
-    What came out: displacements per joint in degrees (mm if it slides), poses in rad and m.
+    The measurements: displacements per joint in degrees (prismatic: mm), poses in rad and m.
 
-    `fall` and the two drifts are the largest displacements within a time, `pushed` is the way
-    between rest and rest. `poses` are those of the stick figures, `hold` [s] the time of `drift`.
+    `fall` and the two drifts are the largest displacements within an interval, `pushed` is the
+    displacement from rest to rest. `poses` are drawn as stick figures; `hold` [s] is the duration
+    of `drift`.
 
     """
 
@@ -40,44 +41,44 @@ class Outcome:
     poses: dict[str, np.ndarray] = field(default_factory=dict)
 
     def largest(self, displacement: np.ndarray) -> float:
-        """Return the largest displacement of a joint that turns [deg]."""
+        """Return the largest displacement of a revolute joint [deg]."""
         return float(np.max(displacement[self.recording.turning], initial=0.0))
 
     def failures(self) -> list[str]:
-        """Return what was not as it should be, one sentence each."""
+        """Return one sentence per failed expectation."""
         fall, pushed = self.largest(self.fall), self.largest(self.pushed)
         drifts = {'held': self.drift, 'held after the push': self.drift_after_push}
-        found = [
+        failures = [
             f'{when}, it drifted {self.largest(drift):.2f} degrees; '
             f'expected less than {MAX_DRIFT:.0f}'
             for when, drift in drifts.items()
             if not self.largest(drift) < MAX_DRIFT
         ]
         if not fall > MIN_FALL:
-            found.insert(
+            failures.insert(
                 0,
                 f'released without the node, it fell {fall:.1f} degrees; expected '
                 f'more than {MIN_FALL:.0f}',
             )
         if not pushed > MIN_PUSH:
-            found.append(
+            failures.append(
                 f'the push moved it {pushed:.1f} degrees; expected more than {MIN_PUSH:.0f}'
             )
-        return found
+        return failures
 
 
 class Story:
-    """Tells the story to a robot and a node that are both running."""
+    """Runs the sequence with a running robot and a running node."""
 
     def __init__(self, client: Client, hold: float, say: Callable[[str], None]) -> None:
-        """Use a connected client and hold the arm for `hold` seconds; `say` prints a line."""
+        """Hold the arm for `hold` seconds before the push; `say` prints a line."""
         self._client = client
         self._recording = client.recording
         self._say = say
         self.outcome = Outcome(client.recording, hold)
 
-    def tell(self) -> Outcome:
-        """Go through all phases and return what was measured."""
+    def run(self) -> Outcome:
+        """Run all phases and return the measurements."""
         self.outcome.poses['start'] = self._recording.position
         self._fall()
         self._return_to_start()
@@ -89,7 +90,7 @@ class Story:
         return self.outcome
 
     def _fall(self) -> None:
-        """Without the node's output: release the brakes for a second."""
+        """Release the brakes for a second while the output is off."""
         start = self._recording.position
         self._client.set_brakes(False)
         with self._phase('falls, node off') as phase:
@@ -97,12 +98,12 @@ class Story:
         self._client.set_brakes(True)
         self.outcome.fall = self._recording.displacement(start, phase.start, phase.end)
         self.outcome.poses['after the fall'] = self._recording.position
-        self._tell(
+        self._print(
             'output off, brakes released', 'fell', self.outcome.fall, f'in {FALL_TIME:.0f} s'
         )
 
     def _return_to_start(self) -> None:
-        """Let the robot travel back to its start pose."""
+        """Move the robot back to its start pose."""
         goal = self.outcome.poses['start']
         with self._phase('back to the start'):
             self._client.reset()
@@ -113,20 +114,20 @@ class Story:
             )
 
     def _enable(self) -> None:
-        """Turn the output on while the brakes still hold."""
+        """Turn the output on while the brakes are engaged."""
         with self._phase('ramps up'):
             self._client.enable(True)
             self._client.wait_for_state('ACTIVE', 5.0)
 
     def _hold(self) -> None:
-        """With the output on: release the brakes for good."""
+        """Release the brakes while the output is on."""
         start = self._recording.position
         self._client.set_brakes(False)
         with self._phase('held by the node') as phase:
             self._client.spin_for(self.outcome.hold)
         self.outcome.drift = self._recording.displacement(start, phase.start, phase.end)
         self.outcome.poses['held'] = self._recording.position
-        self._tell(
+        self._print(
             'output on, brakes released',
             'drifted',
             self.outcome.drift,
@@ -134,14 +135,14 @@ class Story:
         )
 
     def _push(self) -> None:
-        """Push, and wait until friction has stopped the arm."""
+        """Push the arm, and wait until friction has stopped it."""
         start = self._recording.position
         with self._phase('pushed') as phase:
             self.outcome.push = self._client.push()
             self._client.spin_for(0.5)
             self._client.wait_for(self._rested(), REST_TIMEOUT, 'the pushed arm to come to rest')
         self.outcome.pushed = np.abs(self._recording.natural(self._recording.position - start))
-        self._tell(
+        self._print(
             self.outcome.push,
             'moved',
             self.outcome.pushed,
@@ -149,18 +150,18 @@ class Story:
         )
 
     def _watch(self) -> None:
-        """Look whether the arm stays where it was pushed to."""
+        """Measure the drift at the pose after the push."""
         start = self._recording.position
         with self._phase('held there') as phase:
             self._client.spin_for(WATCH_TIME)
         self.outcome.drift_after_push = self._recording.displacement(start, phase.start, phase.end)
         self.outcome.poses['after the push'] = self._recording.position
-        self._tell(
+        self._print(
             'left alone there', 'drifted', self.outcome.drift_after_push, f'in {WATCH_TIME:.0f} s'
         )
 
     def _disable(self) -> None:
-        """Catch the arm with the brakes, then turn the output off."""
+        """Engage the brakes, then turn the output off."""
         with self._phase('ramps down'):
             self._client.set_brakes(True)
             self._client.enable(False)
@@ -187,13 +188,13 @@ class Story:
 
     @contextmanager
     def _phase(self, name: str) -> Iterator[Phase]:
-        """Put a phase on the time line of the recording."""
+        """Add a phase to the recording."""
         now = self._recording.now
         phase = Phase(name, now, now)
         self._recording.phases.append(phase)
         yield phase
         phase.end = self._recording.now
 
-    def _tell(self, when: str, verb: str, way: np.ndarray, rest: str) -> None:
+    def _print(self, when: str, verb: str, displacement: np.ndarray, rest: str) -> None:
         """Print one line of results."""
-        self._say(f'{when}: {verb} {self.outcome.largest(way):.2f} degrees {rest}')
+        self._say(f'{when}: {verb} {self.outcome.largest(displacement):.2f} degrees {rest}')

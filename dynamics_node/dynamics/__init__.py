@@ -1,20 +1,22 @@
 """
-The library's face: checked arrays and words in, kernels underneath.
+The public library: checked arguments, errors in words, kernels underneath.
+
+`robot_model` is the API page, `batch` chooses between kernel and machine code; the other modules
+compose quantities from D, C and G.
 
 What may change here: argument checks, shapes, and quantities composed from D, C and G.
 
 """
 
+from .batch import DynamicsTerms
 from .compensation import Compensation
 from .effort_limits import MaxPayload, over_limit, OverLimit
 from .friction import Friction
 from .joint_selection import JointSelection
-from .locked_joints import forward_dynamics_held
+from .locked_joints import forward_dynamics_locked
 from .momentum_observer import MomentumObserver
-from .one_off import one_off_model
 from .payload import Payload
 from .robot_model import RobotModel
-from .terms import DynamicsTerms
 from .trajectory import complete_trajectory, Trajectory
 
 __all__ = [
@@ -29,7 +31,6 @@ __all__ = [
     'RobotModel',
     'Trajectory',
     'complete_trajectory',
-    'forward_dynamics_held',
-    'one_off_model',
+    'forward_dynamics_locked',
     'over_limit',
 ]

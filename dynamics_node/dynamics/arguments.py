@@ -1,39 +1,43 @@
-"""What arguments must be, and what is said when they are not."""
+"""Checks of arguments, with errors that name argument, expected and given value."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ArgumentError, quoted, suggestion
+from ..model.tree import LinkFrame
 
 # Links that an error message lists.
-_MOST_SHOWN = 50
+_MAX_LISTED = 50
 
 
-def check_link(links, link, field='link'):
+def check_link(links: Mapping[str, LinkFrame], link: str, field: str = 'link') -> None:
     """
-    Demand that a link is one of the robot's.
+    Require that a link is one of the robot's.
 
     Parameters
     ----------
     links : dict of str to LinkFrame
     link : str
     field : str
-        What the caller gave the name in.
+        Name of the caller's argument, for the error.
 
     Raises
     ------
     ArgumentError
-        With the link that was probably meant, or the links that there are.
+        With a suggestion of a similar name, or a list of the robot's links.
 
     """
     if link not in links:
-        shown = ', '.join(list(links)[:_MOST_SHOWN]) + (', ...' * (len(links) > _MOST_SHOWN))
+        available = ', '.join(list(links)[:_MAX_LISTED]) + (', ...' * (len(links) > _MAX_LISTED))
         raise ArgumentError(
             f'{field}: {quoted(link)} is not a link of the robot'
-            + (suggestion(link, links) or f'; expected one of {shown}')
+            + (suggestion(link, links) or f'; expected one of {available}')
         )
 
 
-def gravity_vector(value):
+def gravity_vector(value: ArrayLike) -> NDArray[np.float64]:
     """
     Check a gravity acceleration.
 
@@ -63,14 +67,14 @@ def gravity_vector(value):
     return vector
 
 
-def per_joint(name, joint_names, value):
+def per_joint(name: str, joint_names: Sequence[str], value: ArrayLike) -> NDArray[np.float64]:
     """
-    Check one number per joint, or one for all.
+    Check non-negative numbers, one per joint or one for all.
 
     Parameters
     ----------
     name : str
-        What it is, for people.
+        Name of the quantity, for the error.
     joint_names : tuple of str
         The n joints.
     value : array_like, shape (n,), or float

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .robot_model import RobotModel
 
@@ -10,30 +11,32 @@ from .robot_model import RobotModel
 @dataclass(frozen=True)
 class Compensation:
     """
-    The sum of the wanted terms of the manipulator equation, for the chosen joints.
+    The sum of the enabled terms of the manipulator equation, for the selected joints.
 
     Attributes
     ----------
     model : RobotModel
     index : numpy.ndarray of int, shape (m,), or None
-        Places of the chosen joints among the model's; None if they are the model's in its order.
+        Places of the selected joints in the model's q; None for all in the model's order.
     gravity, coriolis, friction : bool
-        Which terms are part of the effort.
+        Terms that are part of the effort.
 
     """
 
     model: RobotModel
-    index: np.ndarray | None = None
+    index: NDArray[np.intp] | None = None
     gravity: bool = True
     coriolis: bool = False
     friction: bool = False
 
     @property
-    def needs_velocity(self):
+    def needs_velocity(self) -> bool:
         """Whether a term depends on the velocity."""
         return self.coriolis or self.friction
 
-    def torques(self, position, velocity):
+    def torques(
+        self, position: NDArray[np.float64], velocity: NDArray[np.float64] | None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """
         Return the gravity torque and the compensating effort at a state.
 
@@ -42,8 +45,8 @@ class Compensation:
         position : numpy.ndarray, shape (n,)
             Of all joints of the model, rad or m.
         velocity : numpy.ndarray, shape (n,), or None
-            rad/s or m/s; only read if `needs_velocity`. NaN counts as zero, and so does the
-            velocity of a joint that is not chosen.
+            rad/s or m/s; required if `needs_velocity`. NaN counts as zero, and so does the
+            velocity of a joint that is not selected.
 
         Returns
         -------
@@ -51,22 +54,25 @@ class Compensation:
             G(q), and the sum of the terms, N m or N.
 
         """
-        G = self._chosen(self.model.gravity_torque(position))
+        G = self._select(self.model.gravity_torque(position))
         effort = G if self.gravity else np.zeros(len(G))
         if self.needs_velocity:
+            assert velocity is not None
             effort = effort + self._of_motion(position, velocity)
         return G, effort
 
-    def _of_motion(self, position, velocity):
+    def _of_motion(
+        self, position: NDArray[np.float64], velocity: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
         qd = np.zeros(len(velocity))
-        chosen = slice(None) if self.index is None else self.index
-        qd[chosen] = np.nan_to_num(velocity[chosen], nan=0.0)
+        selected = slice(None) if self.index is None else self.index
+        qd[selected] = np.nan_to_num(velocity[selected], nan=0.0)
         effort = np.zeros(len(qd))
         if self.coriolis:
             effort += self.model.coriolis_matrix(position, qd) @ qd
         if self.friction:
             effort += self.model.friction_torque(qd)
-        return self._chosen(effort)
+        return self._select(effort)
 
-    def _chosen(self, values):
+    def _select(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         return values if self.index is None else values[self.index]

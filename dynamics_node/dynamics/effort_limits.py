@@ -1,44 +1,55 @@
-"""Which points of a trajectory, and which joints, ask for more effort than they may have."""
+"""Effort limits: the points and joints of a trajectory above them, and the largest payload."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .arguments import check_link
 from ..errors import ArgumentError
 from ..kernels import recursive
 from ..kernels.packing import pack
-from ..model.tree import PRISMATIC
+from ..model.tree import KinematicTree, PRISMATIC
+
+if TYPE_CHECKING:
+    from .robot_model import RobotModel
+
+# Rounding of an effort per body between base and payload, in units of force times distance. A
+# payload at a shorter lever would have to exceed 1e12 kg to reach a limit.
+_ROUNDING = 16 * 2.0**-52
 
 
 class OverLimit(NamedTuple):
     """
-    Where efforts are over their limits.
+    Points and joints with efforts over the limits.
 
     Attributes
     ----------
     points : numpy.ndarray of int
-        The points at which some joint is, ascending, counted from 0; empty if all is well.
+        Points with a joint over its limit, ascending, counted from 0; empty if there is none.
     joints : numpy.ndarray of int
-        The joints that are at some point, ascending, counted from 0.
+        Joints over their limit at some point, ascending, counted from 0.
     peak_effort : numpy.ndarray, shape (n,)
         The largest absolute effort of each joint, N m or N.
 
     """
 
-    points: np.ndarray
-    joints: np.ndarray
-    peak_effort: np.ndarray
+    points: NDArray[np.intp]
+    joints: NDArray[np.intp]
+    peak_effort: NDArray[np.float64]
 
 
-def over_limit(efforts, limits):
+def over_limit(efforts: ArrayLike, limits: ArrayLike) -> OverLimit:
     """
-    Return which points and joints are over the effort limits.
+    Return the points and joints over the effort limits.
 
     Parameters
     ----------
     efforts : array_like, shape (N, n)
-        Of N points, N m or N. One that is NaN is not within any limit.
+        Of N points, N m or N. NaN counts as over every limit.
     limits : array_like, shape (n,)
         Largest absolute efforts; NaN: the joint has no limit.
 
@@ -49,7 +60,7 @@ def over_limit(efforts, limits):
     Raises
     ------
     ArgumentError
-        If there is no point or shapes do not fit, or a limit is negative.
+        If there is no point, shapes do not fit, or a limit is negative.
 
     """
     efforts = np.abs(np.asarray(efforts, dtype=float))
@@ -57,21 +68,21 @@ def over_limit(efforts, limits):
         raise ArgumentError(
             f'efforts: expected shape (N, n) with at least one point, got {efforts.shape}'
         )
-    limits = checked_limits(limits, efforts.shape[1])
-    over = ~(efforts <= limits) & ~np.isnan(limits)
+    checked = checked_limits(limits, efforts.shape[1])
+    over = ~(efforts <= checked) & ~np.isnan(checked)
     return OverLimit(
         np.flatnonzero(over.any(axis=1)), np.flatnonzero(over.any(axis=0)), efforts.max(axis=0)
     )
 
 
-def checked_limits(limits, count):
+def checked_limits(limits: ArrayLike, count: int) -> NDArray[np.float64]:
     """
     Return effort limits as an array.
 
     Parameters
     ----------
     limits : array_like, shape (n,)
-        N m or N, not negative; NaN: none.
+        N m or N, not negative; NaN: the joint has no limit.
     count : int
         n.
 
@@ -82,7 +93,7 @@ def checked_limits(limits, count):
     Raises
     ------
     ArgumentError
-        If the shape is another one or a limit is negative.
+        If the shape is wrong or a limit is negative.
 
     """
     limits = np.asarray(limits, dtype=float)
@@ -99,11 +110,6 @@ def checked_limits(limits, count):
     return limits
 
 
-# Rounding of an effort, in units of the force times the way from the base to the payload, per
-# body in between. A lever this short would hold more than any arm: 1e12 kg and beyond.
-_ROUNDING = 16 * 2.0**-52
-
-
 class MaxPayload(NamedTuple):
     """
     The largest point masses, one per state.
@@ -111,27 +117,27 @@ class MaxPayload(NamedTuple):
     Attributes
     ----------
     mass : numpy.ndarray, shape (...)
-        kg; 0 where the robot is over a limit already, infinite where no limit is in the way.
+        kg; 0 where the robot is over a limit already, infinite where no joint limits the mass.
     joint : numpy.ndarray of int, shape (...)
-        Index of the joint that allows no more, -1 where none is in the way.
+        Index of the limiting joint, -1 where there is none.
 
     """
 
-    mass: np.ndarray
-    joint: np.ndarray
+    mass: NDArray[np.float64]
+    joint: NDArray[np.intp]
 
-    def least(self):
+    def least(self) -> tuple[float, int, tuple[int, ...]]:
         """
-        Return the largest payload for all states together, say of a trajectory.
+        Return the largest payload within the limits at all states, for example of a trajectory.
 
         Returns
         -------
         mass : float
             kg.
         joint : int
-            Which allows no more, -1 for none.
+            The limiting joint, -1 for none.
         point : tuple of int
-            The state at which it does: its place along the batch axes.
+            The limiting state: its index along the batch axes.
 
         Raises
         ------
@@ -149,12 +155,20 @@ class MaxPayload(NamedTuple):
         )
 
 
-def max_payload(model, q, link, point, qd, qdd, effort_limits):
+def max_payload(
+    model: RobotModel,
+    q: ArrayLike,
+    link: str,
+    point: ArrayLike,
+    qd: ArrayLike,
+    qdd: ArrayLike,
+    effort_limits: ArrayLike,
+) -> MaxPayload:
     """
     Return the largest point masses at a point of a link; see `RobotModel.max_payload`.
 
-    Efforts are linear in the mass. Those of one kilogram come from the same formulas as all
-    others, on a tree that has no other inertia.
+    Efforts are linear in the mass. The efforts of one kilogram come from the same recursion, on a
+    tree without other inertia.
 
     Parameters
     ----------
@@ -167,7 +181,7 @@ def max_payload(model, q, link, point, qd, qdd, effort_limits):
     point : array_like, shape (3,)
         In the link's frame, m.
     effort_limits : array_like, shape (n,)
-        N m or N; NaN: none.
+        N m or N; NaN: the joint has no limit.
 
     Returns
     -------
@@ -187,7 +201,7 @@ def max_payload(model, q, link, point, qd, qdd, effort_limits):
     limits = checked_limits(effort_limits, n)
     body, position = _in_body(model.tree, link, point)
     effort = model.inverse_dynamics(q, qd, qdd)
-    with np.errstate(all='ignore'):  # a point beyond all robots: NaN, and so is the mass
+    with np.errstate(all='ignore'):  # overflow of an extreme point: the mass is NaN
         per_kg = _per_kilogram(
             model,
             body,
@@ -197,13 +211,13 @@ def max_payload(model, q, link, point, qd, qdd, effort_limits):
                 for value in (q, qd, qdd)
             ],
         )
-    with np.errstate(all='ignore'):  # no force or no limit: infinite, or not used
+    with np.errstate(all='ignore'):  # zero force or no limit: infinite or unused
         mass = np.where(
             per_kg == 0.0, np.inf, (limits - np.sign(per_kg) * effort) / np.abs(per_kg)
         )
         excess = np.where(np.abs(effort) > limits, np.abs(effort) / limits, 0.0)
     mass[np.broadcast_to(np.isnan(limits), mass.shape)] = np.inf
-    # Joints in the last axis; one more, always infinite, stands for "none".
+    # Joints along the last axis; an additional one, always infinite, stands for "none".
     mass, excess = (
         np.concatenate((values, np.full((*effort.shape[:-1], 1), fill)), axis=-1)
         for values, fill in ((mass, np.inf), (excess, 0.0))
@@ -217,10 +231,10 @@ def max_payload(model, q, link, point, qd, qdd, effort_limits):
     )
 
 
-def _in_body(tree, link, point):
-    # The row of the body that carries the link (-1: the base), and the point in its frame.
+def _in_body(tree: KinematicTree, link: str, value: ArrayLike) -> tuple[int, NDArray[np.float64]]:
+    # The row of the body that carries the link (-1: the base), and the point in its frame, (4,).
     check_link(tree.links, link)
-    point = np.asarray(point, dtype=float)
+    point = np.asarray(value, dtype=float)
     if point.shape != (3,) or not np.isfinite(point).all():
         raise ArgumentError(
             'point: expected three finite numbers in the frame of the link, m, '
@@ -230,19 +244,23 @@ def _in_body(tree, link, point):
     return frame.body, frame.placement @ np.append(point, 1.0)
 
 
-def _per_kilogram(model, body, position, states):
-    # The efforts of 1 kg, shape (..., n); zero where they are nothing but rounding.
+def _per_kilogram(
+    model: RobotModel,
+    body: int,
+    position: NDArray[np.float64],
+    states: Sequence[NDArray[np.float64]],
+) -> NDArray[np.float64]:
+    # The efforts of 1 kg, shape (..., n); exactly zero where they are mere rounding.
     tree, shape = model.tree, states[0].shape
     if body < 0 or states[0].size == 0:
         return np.zeros(shape)
     inertia = np.zeros_like(tree.inertia)
     inertia[body] = np.outer(position, position)  # (2) of a point mass of 1 kg
-    q, qd, qdd = (_beside_carriage(value.reshape(-1, shape[-1])) for value in states)
+    q, qd, qdd = (_with_carriage_at_rest(value.reshape(-1, shape[-1])) for value in states)
     effort = np.empty_like(q)
-    recursive.inverse_dynamics(
-        *_on_carriage(*pack(tree, model.gravity, inertia)), q, qd, qdd, effort
-    )
-    # What pushes the carriage is the force that the kilogram needs, N.
+    packed = pack(tree, model.gravity, inertia)
+    recursive.inverse_dynamics(*_on_carriage(packed.structure, packed.numbers), q, qd, qdd, effort)
+    # The efforts of the carriage are the force on the kilogram, N.
     force = np.linalg.norm(effort[:, -3:], axis=1)
     effort = effort[:, :-3]
     rounding = _rounding(tree, body, position, q) * force[:, None]
@@ -250,9 +268,11 @@ def _per_kilogram(model, body, position, states):
     return effort.reshape(shape)
 
 
-def _on_carriage(structure, numbers):
-    # The whole tree on three prismatic joints along the axes of the base, which stand still:
-    # their efforts are the force on it. They come first, and are the last three coordinates.
+def _on_carriage(
+    structure: NDArray[np.int64], numbers: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    # The tree on three prismatic joints at rest along the axes of the base: their efforts are the
+    # total force. They are the first three bodies and the last three coordinates.
     count = recursive.joint_count(structure)
     rails = np.array(
         [(-1, PRISMATIC, count), (0, PRISMATIC, count + 1), (1, PRISMATIC, count + 2)],
@@ -266,26 +286,28 @@ def _on_carriage(structure, numbers):
     rows[:, recursive.MULTIPLIER] = 1.0
     packed = np.concatenate((rails, structure)), np.concatenate((rows, numbers))
     for array in packed:
-        array.flags.writeable = False  # a type that is compiled already
+        array.flags.writeable = False  # the array type for which the kernels are compiled
     return packed
 
 
-def _beside_carriage(values):
+def _with_carriage_at_rest(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate((values, np.zeros((len(values), 3))), axis=1)
 
 
-def _rounding(tree, body, position, q):
-    # Per state and joint, what an effort of a force of 1 N may be by rounding alone.
+def _rounding(
+    tree: KinematicTree, body: int, position: NDArray[np.float64], q: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    # Bound on the rounding of the efforts of a force of 1 N, shape (B, n).
     chain = []
     reach = np.full(len(q), np.linalg.norm(position[:3]))
     while body >= 0:
         chain.append(body)
         reach += np.linalg.norm(tree.joint_placement[body, :3, 3])
-        if tree.joint_type[body] == PRISMATIC:
+        if tree.is_prismatic[body]:
             reach += np.abs(tree.multiplier[body] * q[:, tree.q_index[body]] + tree.offset[body])
-        body = tree.parent[body]
+        body = int(tree.parent[body])
     result = np.zeros((len(q), len(tree.joint_names)))
     for k in chain:
-        lever = 1.0 if tree.joint_type[k] == PRISMATIC else reach
+        lever = 1.0 if tree.is_prismatic[k] else reach
         result[:, tree.q_index[k]] += abs(tree.multiplier[k]) * lever
     return _ROUNDING * len(chain) * result

@@ -1,20 +1,22 @@
 """Friction in the joints: viscous and dry."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .arguments import per_joint
 from ..errors import ArgumentError
 
-# Below this speed dry friction fades through zero unless somebody says otherwise, rad/s or m/s.
+# Default speed below which dry friction fades through zero, rad/s or m/s.
 SMOOTHING_VELOCITY = 0.05
 
 
 @dataclass(frozen=True)
 class Friction:
     """
-    Friction of n joints, each of its own speed alone.
+    Friction of n joints; that of a joint depends on its own velocity only.
 
     Attributes
     ----------
@@ -23,17 +25,17 @@ class Friction:
     coulomb : numpy.ndarray, shape (n,)
         Dry friction, N m or N; read-only.
     smoothing_velocity : numpy.ndarray, shape (n,)
-        rad/s or m/s, > 0: at this speed dry friction has 76 % of its size; read-only.
+        rad/s or m/s, > 0: at this speed dry friction reaches 76 % of its value; read-only.
 
     """
 
-    viscous: np.ndarray
-    coulomb: np.ndarray
-    smoothing_velocity: np.ndarray
+    viscous: NDArray[np.float64]
+    coulomb: NDArray[np.float64]
+    smoothing_velocity: NDArray[np.float64]
 
-    def torque(self, qd):
+    def torque(self, qd: NDArray[np.float64]) -> NDArray[np.float64]:
         """
-        Return the efforts that friction takes, viscous q̇ + coulomb tanh(q̇ / smoothing).
+        Return the efforts that overcome friction, viscous q̇ + coulomb tanh(q̇ / smoothing).
 
         Parameters
         ----------
@@ -43,20 +45,25 @@ class Friction:
         Returns
         -------
         numpy.ndarray, shape (..., n)
-            N m or N, of the sign of q̇: what a motor has to add.
+            N m or N, with the sign of q̇; to be added to the other efforts of the motors.
 
         References
         ----------
         docs/mathematics.md, equation (27).
 
         """
-        with np.errstate(over='ignore'):  # however fast: tanh of infinity is 1
+        with np.errstate(over='ignore'):  # at any speed: tanh of infinity is 1
             return self.viscous * qd + self.coulomb * np.tanh(qd / self.smoothing_velocity)
 
 
-def make_friction(joint_names, viscous, coulomb, smoothing_velocity):
+def make_friction(
+    joint_names: Sequence[str],
+    viscous: ArrayLike,
+    coulomb: ArrayLike,
+    smoothing_velocity: ArrayLike,
+) -> Friction:
     """
-    Check the numbers of friction.
+    Check friction coefficients, and return a `Friction`.
 
     Parameters
     ----------

@@ -1,21 +1,30 @@
-"""A choice of joints in an order of one's own: rows and columns of the robot's matrices."""
+"""Selected joints in the user's order: rows and columns of the robot's matrices."""
+
+from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import ArgumentError, quoted, suggestion
 
-# Names that an error message lists: a request may have a million wrong ones.
-_MOST_SHOWN = 5
-_MOST_AVAILABLE = 50
+if TYPE_CHECKING:
+    from .robot_model import RobotModel
+
+# Wrong names that an error message lists: a request may have a million.
+_MAX_WRONG = 5
+# Available names that an error message lists.
+_MAX_AVAILABLE = 50
 
 
 class JointSelection:
     """
-    The joints that a user works with, in the user's order.
+    Joints of a robot selected by the user, in the user's order.
 
-    The robot's other joints keep their mass: they stand still at given positions.
+    The other joints are locked at given positions; their links keep their mass.
 
     Attributes
     ----------
@@ -26,7 +35,7 @@ class JointSelection:
 
     """
 
-    def __init__(self, robot, names=()):
+    def __init__(self, robot: RobotModel, names: Sequence[str] = ()):
         """
         Select joints of a robot.
 
@@ -39,7 +48,7 @@ class JointSelection:
         Raises
         ------
         ArgumentError
-            If a name is unknown, of a fixed or mimic joint, or given twice.
+            If a name is unknown, belongs to a fixed or mimic joint, or is given twice.
 
         """
         available = robot.joint_names
@@ -49,7 +58,8 @@ class JointSelection:
             name: available[place]
             for name, place in zip(robot.tree.moving_joint_names, robot.tree.q_index, strict=True)
         }
-        # Counted once: looking for each name among all takes seconds for ten thousand.
+        # Counting once takes linear time; comparing each name with all others takes seconds for
+        # ten thousand.
         count = Counter(self.names)
         known = set(available)
         wrong = self._unknown([name for name in count if name not in known], available)
@@ -57,20 +67,20 @@ class JointSelection:
         if wrong:
             raise ArgumentError(
                 f'joints: {"; ".join(wrong)}; available: '
-                + ', '.join(available[:_MOST_AVAILABLE])
-                + (', ...' if len(available) > _MOST_AVAILABLE else '')
+                + ', '.join(available[:_MAX_AVAILABLE])
+                + (', ...' if len(available) > _MAX_AVAILABLE else '')
             )
         place = {name: i for i, name in enumerate(available)}
         self.index = np.array([place[name] for name in self.names], dtype=np.intp)
 
-    def permutation(self, names):
+    def permutation(self, names: Sequence[str]) -> NDArray[np.intp]:
         """
-        Return where each of some names stands in this selection.
+        Return the place of each name in this selection.
 
         Parameters
         ----------
         names : sequence of str
-            Empty: this selection's own order. Otherwise a permutation of its names.
+            Empty: this selection's order. Otherwise a permutation of its names.
 
         Returns
         -------
@@ -91,33 +101,35 @@ class JointSelection:
             )
         return np.array([self.names.index(name) for name in names], dtype=np.intp)
 
-    def _differences(self, names):
+    def _differences(self, names: Iterable[str]) -> list[str]:
         count, known = Counter(names), set(self.names)
         wrong = self._unknown([name for name in count if name not in known], self.names)
         wrong += _listed([name for name in count if count[name] > 1], 'is given twice')
         return wrong + _listed([name for name in self.names if name not in count], 'is missing')
 
-    def _unknown(self, unknown, expected):
-        # What is wrong with names that are none of the expected ones.
+    def _unknown(self, unknown: Sequence[str], expected: Sequence[str]) -> list[str]:
+        # Reasons why these names are not among the expected ones.
         movable = set(self._available)
-        not_chosen = [name for name in unknown if name in movable]
+        not_selected = [name for name in unknown if name in movable]
         followers = [name for name in unknown if name in self._leaders and name not in movable]
-        strange = [name for name in unknown if name not in self._leaders]
+        not_joints = [name for name in unknown if name not in self._leaders]
         return [
             *_listed(
-                strange,
+                not_joints,
                 'is not a joint that can be moved',
                 lambda name: suggestion(name, expected),
             ),
-            *_listed(not_chosen, 'is not one of the chosen joints'),
+            *_listed(not_selected, 'is not one of the chosen joints'),
             *_listed(
                 followers, 'follows', lambda name: f' {quoted(self._leaders[name])}: leave it out'
             ),
         ]
 
 
-def _listed(names, what, rest=lambda name: ''):
-    sentences = [f'{quoted(name)} {what}{rest(name)}' for name in names[:_MOST_SHOWN]]
-    if len(names) > _MOST_SHOWN:
-        sentences.append(f'and {len(names) - _MOST_SHOWN} more like these')
+def _listed(
+    names: Sequence[str], problem: str, detail: Callable[[str], str] = lambda name: ''
+) -> list[str]:
+    sentences = [f'{quoted(name)} {problem}{detail(name)}' for name in names[:_MAX_WRONG]]
+    if len(names) > _MAX_WRONG:
+        sentences.append(f'and {len(names) - _MAX_WRONG} more like these')
     return sentences

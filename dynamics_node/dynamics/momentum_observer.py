@@ -1,42 +1,50 @@
-"""`MomentumObserver`: the external joint torque, from what the joints measure."""
+"""`MomentumObserver`: the external joint torque, from measured positions, velocities, efforts."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .joint_selection import JointSelection
 from ..errors import ArgumentError
 
-# The momentum of a longer time says too little about what happened within it, s.
+if TYPE_CHECKING:
+    from .robot_model import RobotModel
+
+# Longest time between two states over which the momentum is a useful average, s.
 LONGEST_STEP = 0.1
 
 
 class MomentumObserver:
     """
-    Estimates the joint efforts that something outside the robot causes, without accelerations.
+    Estimate of the joint efforts caused by contact with the environment, without accelerations.
 
-    The generalized momentum p = D q̇ changes by the measured efforts, by what the model knows, and
-    by the rest, which is external:
+    The generalized momentum p = D q̇ changes by the measured efforts, the modeled efforts, and the
+    remainder, which is external:
 
         ṗ = τ + Cᵀ q̇ - G - friction + τ_ext
 
     The estimate follows τ_ext with a first-order lag, 1 - exp(-K t) after a step: 95 % of it
-    after 3 / K. It is as good as model and measured efforts are: a payload or a friction that the
-    model does not know counts as external.
+    after 3 / K. It is as good as model and measured efforts: payload and friction missing from the
+    model count as external.
 
-    Not for several threads at once: it remembers the last state.
+    Not thread-safe: it stores the last state.
 
     Attributes
     ----------
     joint_names : tuple of str
-        The m chosen joints, in the order of the estimate.
+        The m selected joints, in the order of the estimate.
     gain : float
         K, 1/s.
     estimate : numpy.ndarray, shape (m,)
         The newest estimate, N m or N, read-only; zero at the beginning.
     observed : float
-        For how long it has been observing without a break, s. While it is 0 the estimate says
-        nothing.
+        Duration of observation without interruption, s. While it is 0 the estimate is
+        meaningless.
 
     References
     ----------
@@ -44,22 +52,28 @@ class MomentumObserver:
 
     """
 
-    def __init__(self, robot, gain, joints=(), longest_step=LONGEST_STEP):
+    def __init__(
+        self,
+        robot: RobotModel,
+        gain: float,
+        joints: Sequence[str] = (),
+        longest_step: float = LONGEST_STEP,
+    ):
         """
-        Observe a robot; nothing is known yet.
+        Observe a robot, from its first state on.
 
         Parameters
         ----------
         robot : RobotModel
             With its payload, friction and rotor inertia.
         gain : float
-            K, 1/s, positive. Larger is faster, and passes on more of the noise: an error of the
-            measured momentum appears multiplied by it.
+            K, 1/s, positive. A larger gain is faster and noisier: an error of the measured
+            momentum appears multiplied by it.
         joints : sequence of str
-            The joints to estimate, in any order; empty for all. Each counts for itself: the
-            efforts of the others need not be known.
+            The joints to estimate, in any order; empty for all. The efforts of the other joints
+            are not needed.
         longest_step : float
-            A longer time between two states begins anew, s.
+            After a longer time between two states the observer starts again, s.
 
         Raises
         ------
@@ -79,18 +93,19 @@ class MomentumObserver:
         self._is_other[self._index] = False
         self.reset()
 
-    def reset(self):
-        """Forget the last state and the estimate; the next state begins anew."""
+    def reset(self) -> None:
+        """Discard the last state and the estimate; the observer starts again at the next state."""
         self._time = math.nan
-        self._state = self._momentum = self._rate = None
+        self._state: tuple[NDArray[np.float64], ...] | None = None
+        self._momentum = self._rate = np.empty(0)
         self._start_from_zero()
 
-    def follow(self, robot):
+    def follow(self, robot: RobotModel) -> None:
         """
-        Go on with another payload, gravity, friction or rotor inertia; the estimate stays.
+        Continue with another payload, gravity, friction or rotor inertia; the estimate stays.
 
-        What the models say differently goes into the estimate or out of it with its lag, and not
-        at once: on a base that tilts gravity may change with every state.
+        The difference between the models enters the estimate with its lag, not as a step: on a
+        tilting base gravity may change with every state.
 
         Parameters
         ----------
@@ -100,7 +115,7 @@ class MomentumObserver:
         Raises
         ------
         ArgumentError
-            If it has other joints.
+            If its joints differ.
 
         """
         if tuple(robot.joint_names) != self._joint_names:
@@ -110,54 +125,56 @@ class MomentumObserver:
             )
         self._robot = robot
         if self._state is not None:
-            # What the other model makes of the last state: a momentum that only the models tell
-            # apart is no push.
+            # The last state by the new model: a difference of momentum between the models is not
+            # an external effort.
             self._momentum, self._rate = self._balance(*self._state)
 
-    def update(self, time, q, qd, effort):
+    def update(
+        self, time: float, q: ArrayLike, qd: ArrayLike, effort: ArrayLike
+    ) -> NDArray[np.float64]:
         """
-        Take a measured state, and return the new estimate.
+        Add a measured state, and return the new estimate.
 
         Parameters
         ----------
         time : float
-            When it was measured, s. Not newer than the last one, or much newer: begins anew.
+            Time of measurement, s. If it does not increase, or by more than the longest step,
+            the observer starts again.
         q, qd : array_like, shape (n,)
-            Positions (rad or m) and velocities of all joints of the robot. A velocity that is
-            not known, NaN, of a joint that is not chosen, counts as standing still.
+            Positions (rad or m) and velocities of all joints of the robot. An unknown velocity,
+            NaN, of a joint that is not selected counts as zero.
         effort : array_like, shape (m,)
-            Measured efforts of the chosen joints, N m or N.
+            Measured efforts of the selected joints, N m or N.
 
         Returns
         -------
         numpy.ndarray, shape (m,)
-            Estimated external efforts, N m or N: positive where something outside pushes the
-            joint in its positive direction. Zero for the state that it begins with; NaN, and the
-            next one begins anew, where an argument or what follows from it is not finite.
+            Estimated external efforts, N m or N: positive where the environment pushes the joint
+            in its positive direction. Zero at the first state; NaN, and a new start at the next
+            state, if an argument or a result is not finite.
 
         Raises
         ------
         ArgumentError
-            If an array does not have the shape that is expected.
+            If an array has a wrong shape.
 
         References
         ----------
         docs/mathematics.md, equations (33) and (34).
 
         """
-        q, qd, effort = self._checked(q, qd, effort)
+        state = self._checked(q, qd, effort)
         time = float(time)
-        is_known = all(np.isfinite(value).all() for value in (time, q, qd, effort))
-        if is_known:
-            momentum, rate = self._balance(q, qd, effort)
-            is_known = np.isfinite(momentum).all() and np.isfinite(rate).all()
-        if not is_known:
+        if not all(np.isfinite(value).all() for value in (time, *state)):
+            return self._unknown()
+        momentum, rate = self._balance(*state)
+        if not (np.isfinite(momentum).all() and np.isfinite(rate).all()):
             return self._unknown()
         dt = time - self._time
         if 0.0 < dt <= self._longest_step:
             with np.errstate(over='ignore', invalid='ignore'):
                 external = (momentum - self._momentum) / dt - 0.5 * (rate + self._rate)  # (34)
-                # What a filter of the gain K makes of a constant input, whatever K dt is.
+                # Exact response of a first-order filter to a constant input, for any K dt.
                 estimate = self.estimate - math.expm1(-self.gain * dt) * (external - self.estimate)
             if not np.isfinite(estimate).all():
                 return self._unknown()
@@ -166,23 +183,23 @@ class MomentumObserver:
             self.observed += dt
         else:
             self._start_from_zero()
-        self._time, self._state = time, (q, qd, effort)
+        self._time, self._state = time, state
         self._momentum, self._rate = momentum, rate
         return self.estimate
 
-    def _unknown(self):
+    def _unknown(self) -> NDArray[np.float64]:
         self.reset()
         return np.full(len(self._index), math.nan)
 
-    def _start_from_zero(self):
+    def _start_from_zero(self) -> None:
         self.observed = 0.0
         self.estimate = np.zeros(len(self._index))
         self.estimate.flags.writeable = False
 
-    def _checked(self, q, qd, effort):
+    def _checked(self, *arguments: ArrayLike) -> tuple[NDArray[np.float64], ...]:
         n, m = len(self._is_other), len(self._index)
-        # Copies, because the last state is remembered.
-        q, qd, effort = (np.array(value, dtype=float) for value in (q, qd, effort))
+        # Copies, because the last state is stored.
+        q, qd, effort = (np.array(value, dtype=float) for value in arguments)
         for name, value, count in (('q', q, n), ('qd', qd, n), ('effort', effort, m)):
             if value.shape != (count,):
                 raise ArgumentError(
@@ -192,18 +209,20 @@ class MomentumObserver:
                 )
         return q, np.where(self._is_other & np.isnan(qd), 0.0, qd), effort
 
-    def _balance(self, q, qd, effort):
-        # Rows of the whole robot, not its sub-blocks: (33) holds row by row, also where joints
-        # that were not chosen move.
+    def _balance(
+        self, q: NDArray[np.float64], qd: NDArray[np.float64], effort: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        # Rows of the whole robot, not sub-blocks: (33) holds row by row, also while the other
+        # joints move.
         rows = self._index
-        with np.errstate(over='ignore', invalid='ignore'):  # however large the numbers are
+        with np.errstate(over='ignore', invalid='ignore'):  # overflow gives NaN, see `update`
             terms = self._robot.dynamics(q, qd)
             momentum = terms.mass_matrix[rows] @ qd
             known = qd @ terms.coriolis_matrix[:, rows] - terms.gravity_torque[rows]  # (33)
             return momentum, effort + known - self._robot.friction_torque(qd)[rows]
 
 
-def _positive(name, value, unit):
+def _positive(name: str, value: float, unit: str) -> float:
     if not (isinstance(value, (int, float, np.number)) and math.isfinite(value) and value > 0.0):
         raise ArgumentError(f'{name}: expected a positive finite number, {unit}, got {value!r}')
     return float(value)

@@ -1,19 +1,22 @@
 """A payload: one more rigid body on a link."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .arguments import check_link
 from ..errors import ArgumentError
 from ..inertia import check_physical, pseudo_inertia, transform_pseudo_inertia
+from ..model.tree import KinematicTree, LinkFrame
 
 
 @dataclass(frozen=True)
 class Payload:
     """
-    What a link carries.
+    A rigid body attached to a link.
 
     Attributes
     ----------
@@ -30,26 +33,33 @@ class Payload:
 
     link: str
     mass: float
-    com: np.ndarray
-    inertia: np.ndarray
+    com: NDArray[np.float64]
+    inertia: NDArray[np.float64]
 
     @cached_property
-    def pseudo_inertia(self):
+    def pseudo_inertia(self) -> NDArray[np.float64]:
         """J of the payload in the link's frame, shape (4, 4): kg m², kg m, kg."""
-        return pseudo_inertia(self.mass, self.com, self.inertia)
+        matrix: NDArray[np.float64] = pseudo_inertia(self.mass, self.com, self.inertia)
+        return matrix
 
 
-def make_payload(links, link, mass, com, inertia):
+def make_payload(
+    links: Mapping[str, LinkFrame],
+    link: str,
+    mass: float,
+    com: ArrayLike,
+    inertia: ArrayLike | None,
+) -> Payload | None:
     """
-    Check a payload.
+    Check the numbers of a payload, and return it.
 
     Parameters
     ----------
     links : dict of str to LinkFrame
-        Those of the robot.
+        Links of the robot.
     link : str
     mass : float
-        kg; 0 for no payload, whatever the rest says.
+        kg; 0 for no payload, then the other arguments are ignored.
     com : array_like, shape (3,)
         m, in the link's frame.
     inertia : array_like, shape (3, 3), or None
@@ -64,7 +74,7 @@ def make_payload(links, link, mass, com, inertia):
     ArgumentError
         If the link is unknown, a shape is wrong or a number is not finite.
     InertiaError
-        If no real body has this mass and inertia; with every violated condition.
+        If this mass and inertia are physically impossible; lists every violated condition.
 
     References
     ----------
@@ -85,11 +95,11 @@ def make_payload(links, link, mass, com, inertia):
     if not np.isfinite(mass):
         raise ArgumentError(f'payload mass: expected a finite number, kg, got {mass}')
     payload = Payload(link, mass, com, inertia)
-    with np.errstate(over='ignore', invalid='ignore'):  # said in words instead
+    with np.errstate(over='ignore', invalid='ignore'):  # reported by the error below
         matrix = payload.pseudo_inertia
     if not np.isfinite(matrix).all():
         raise ArgumentError(
-            'payload: expected second moments that are finite, got them of mass '
+            'payload: expected finite second moments, got those of mass '
             f'{mass:g}, com {com.tolist()} and an inertia tensor of up to '
             f'{np.abs(inertia).max():g}'
         )
@@ -97,7 +107,7 @@ def make_payload(links, link, mass, com, inertia):
     return payload
 
 
-def loaded_inertia(tree, payload):
+def loaded_inertia(tree: KinematicTree, payload: Payload | None) -> NDArray[np.float64]:
     """
     Return the pseudo-inertia of every body, with the payload.
 
@@ -109,7 +119,7 @@ def loaded_inertia(tree, payload):
     Returns
     -------
     numpy.ndarray, shape (N, 4, 4)
-        The tree's own array if nothing is carried: the same numbers to the last bit.
+        Without payload the tree's own array: the same numbers to the last bit.
 
     References
     ----------
@@ -124,7 +134,7 @@ def loaded_inertia(tree, payload):
     return inertia
 
 
-def _finite(name, value, shape, unit):
+def _finite(name: str, value: ArrayLike, shape: tuple[int, ...], unit: str) -> NDArray[np.float64]:
     try:
         array = np.array(value, dtype=float)
     except (TypeError, ValueError):

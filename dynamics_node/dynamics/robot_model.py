@@ -1,60 +1,66 @@
 """`RobotModel`: the dynamics of one robot, for one state or many."""
 
+from __future__ import annotations
+
 import inspect
+import os
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .arguments import check_link, gravity_vector, per_joint
-from .batch import Evaluation, SHAPES
-from .effort_limits import max_payload
-from .friction import make_friction, SMOOTHING_VELOCITY
-from .payload import loaded_inertia, make_payload
-from .terms import DynamicsTerms
+from .batch import DynamicsTerms, Evaluation, SHAPES
+from .effort_limits import max_payload, MaxPayload
+from .friction import Friction, make_friction, SMOOTHING_VELOCITY
+from .payload import loaded_inertia, make_payload, Payload
 from .trajectory import complete_trajectory
-from ..codegen import make_callable
-from ..codegen.manager import Specialization
+from ..codegen import RobotCode, Specialization
 from ..errors import ArgumentError
 from ..kernels.packing import pack
 from ..model import build_tree
-from ..model.tree import REVOLUTE
+from ..model.tree import KinematicTree
 from ..urdf import read_urdf
 
+# m/s²
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
+
+Array = NDArray[np.float64]
 
 
 class RobotModel:
     """
     A robot with a fixed base: D(q) q̈ + C(q, q̇) q̇ + G(q) = τ.
 
-    What it describes never changes: another gravity, payload, rotor inertia or friction makes
-    another model at once (`with_gravity`, `with_payload`...). Friction is no part of the
-    equation above; `friction_torque` says what to add. Every method takes arrays with leading
-    batch axes and may be called from several threads. NaN in an argument gives NaN in all that
-    depends on it.
+    A model is immutable: `with_gravity`, `with_payload` and the like return a new model at little
+    cost. Friction is not part of the equation above; `friction_torque` returns it. Every method
+    takes arrays with leading batch axes and is thread-safe. NaN in an argument gives NaN in all
+    results that depend on it.
 
-    Large batches are computed by as many threads as the process may use, or by `threads`.
+    Large batches are computed by one thread per available processor, or by `threads`.
 
-    A robot that is used often gets machine code of its own, compiled by another process and kept
-    on disk; until it is ready, and for large robots, a general kernel answers. The two agree to
+    A robot in frequent use gets machine code of its own, compiled by another process and kept on
+    disk; until it is ready, and for large robots, a general kernel answers. The two agree to
     rounding. See `specialize`.
 
-    Revolute joints count in rad, rad/s, N m; prismatic ones in m, m/s, N. The base frame is the
-    root link's frame.
+    Units are rad, rad/s, N m for revolute joints and m, m/s, N for prismatic joints. The base
+    frame is the root link's frame.
 
     """
 
     def __init__(
         self,
-        tree,
-        gravity=STANDARD_GRAVITY,
+        tree: KinematicTree,
+        gravity: ArrayLike = STANDARD_GRAVITY,
         *,
-        payload=None,
-        rotor_inertia=0.0,
-        friction=None,
-        specialization=None,
+        payload: Payload | None = None,
+        rotor_inertia: ArrayLike = 0.0,
+        friction: Friction | None = None,
+        compile: bool = True,
+        specialization: Specialization | None = None,
     ):
         """
-        Make the model of a kinematic tree; most users want `from_urdf`.
+        Make the model of a kinematic tree; `from_urdf` is the usual way.
 
         Parameters
         ----------
@@ -66,9 +72,14 @@ class RobotModel:
         rotor_inertia : array_like, shape (n,), or float
             See `with_rotor_inertia`.
         friction : Friction, optional
-            See `with_friction`; by default what the tree says.
+            See `with_friction`; by default that of the tree.
+        compile : bool
+            False: never use machine code of this robot's own, neither from disk nor compiled.
+            For a short-lived model, loading takes longer than it saves; and the general kernel
+            gives the same digits whether or not there is code on disk. It holds for models derived
+            from this one (`with_payload` and the like) too.
         specialization : Specialization, optional
-            That of another model of the same tree, without payload and rotor inertia.
+            Of another model of the same tree; it decides in place of `compile`.
 
         Raises
         ------
@@ -85,27 +96,36 @@ class RobotModel:
             tree.joint_names, tree.friction[:, 0], tree.friction[:, 1], SMOOTHING_VELOCITY
         )
         self._inertia = loaded_inertia(tree, payload)
-        self._specialization = specialization or Specialization(*pack(tree, self._gravity))
-        if self._inertia is not tree.inertia or self._rotor_inertia.any():
-            packed = pack(tree, self._gravity, self._inertia, self._rotor_inertia)
-            specialization = self._specialization.for_any_inertia
-        else:
-            packed = pack(tree, self._gravity)
-            specialization = self._specialization
+        packed = pack(tree, self._gravity, self._inertia, self._rotor_inertia)
+        if specialization is None:
+            # Usually the first model has no payload, and its numbers are those of the bare robot.
+            own = pack(tree, self._gravity) if packed.payload_variant else packed
+            specialization = Specialization(own, compile)
+        self._specialization = specialization
+        if packed.payload_variant and specialization.payload_variant is not None:
+            specialization = specialization.payload_variant
         self._evaluation = Evaluation(packed, tree.joint_names, specialization)
-        specialization.attach(self)
+        specialization.attach(self, _install)
 
     @classmethod
-    def from_urdf(cls, source, gravity=STANDARD_GRAVITY):
+    def from_urdf(
+        cls,
+        source: str | bytes | os.PathLike[str],
+        gravity: ArrayLike = STANDARD_GRAVITY,
+        *,
+        compile: bool = True,
+    ) -> RobotModel:
         """
         Make the model of a URDF.
 
         Parameters
         ----------
         source : str, bytes or os.PathLike
-            A path or the URDF text itself. Meshes are never opened.
+            A path or the URDF text. Meshes are never opened.
         gravity : array_like, shape (3,)
             Gravity acceleration in the root link's frame, m/s², points down.
+        compile : bool
+            False: never use machine code of this robot's own.
 
         Returns
         -------
@@ -114,105 +134,106 @@ class RobotModel:
         Raises
         ------
         RobotDescriptionError
-            If the URDF cannot be used; lists every problem at once.
+            If the URDF is unusable; lists every problem.
         ArgumentError
             If gravity is not three finite numbers.
 
         """
-        return cls(build_tree(read_urdf(source)), gravity)
+        return cls(build_tree(read_urdf(source)), gravity, compile=compile)
 
-    def __getstate__(self):
-        # Machine code stays where it is: its addresses mean nothing in another process.
+    def __getstate__(self) -> dict[str, Any]:
+        # Without machine code: its addresses are meaningless in another process.
         return {name: value for name, value in vars(self).items() if not inspect.isbuiltin(value)}
 
-    def __setstate__(self, state):
+    def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
-        self._evaluation.specialization.attach(self)
+        self._evaluation.specialization.attach(self, _install)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return (
             f'RobotModel({self._n} joints, {self.moving_mass:.6g} kg moving, '
             f'gravity {self._gravity.tolist()} m/s^2)'
         )
 
     @property
-    def joint_names(self):
+    def joint_names(self) -> tuple[str, ...]:
         """Names of the n independent joints in the order of the URDF: the order of q."""
         return self._tree.joint_names
 
     @property
-    def tree(self):
+    def tree(self) -> KinematicTree:
         """The tree of moving bodies, a `KinematicTree`."""
         return self._tree
 
     @property
-    def gravity(self):
+    def gravity(self) -> Array:
         """Gravity acceleration in the base frame, m/s², shape (3,), read-only."""
         return self._gravity
 
     @property
-    def payload(self):
-        """What a link carries besides, a `Payload`, or None; see `with_payload`."""
+    def payload(self) -> Payload | None:
+        """The payload, or None; see `with_payload`."""
         return self._payload
 
     @property
-    def rotor_inertia(self):
+    def rotor_inertia(self) -> Array:
         """Inertia of the rotors on the diagonal of D, kg m² or kg, shape (n,), read-only."""
         return self._rotor_inertia
 
     @property
-    def friction(self):
+    def friction(self) -> Friction:
         """Friction of the joints, a `Friction`; see `with_friction`."""
         return self._friction
 
     @property
-    def link_names(self):
+    def link_names(self) -> tuple[str, ...]:
         """Names of all links, the root link first."""
         return tuple(self._tree.links)
 
     @property
-    def tip_link(self):
-        """Name of the link at the end of the arm: of a tool or a hand, not of a finger."""
+    def tip_link(self) -> str:
+        """Name of the link at the end of the arm: a tool or a hand, not a finger."""
         return self._tree.tip_link
 
     @property
-    def warnings(self):
-        """What was accepted in the description but looks wrong, one sentence each."""
+    def warnings(self) -> tuple[str, ...]:
+        """Implausible but accepted parts of the description, one sentence each."""
         return self._tree.warnings
 
     @property
-    def moving_mass(self):
-        """Mass of everything that joints move, with the payload, kg."""
+    def moving_mass(self) -> float:
+        """Total mass of the moving bodies and the payload, kg."""
         return float(self._inertia[:, 3, 3].sum())
 
     @property
-    def position_limits(self):
+    def position_limits(self) -> Array:
         """Lower and upper position limits, shape (n, 2), rad or m; infinite if none."""
         return self._tree.limits[:, :2]
 
     @property
-    def velocity_limits(self):
+    def velocity_limits(self) -> Array:
         """Velocity limits, shape (n,), rad/s or m/s; NaN if the URDF states none."""
         return self._tree.limits[:, 2]
 
     @property
-    def effort_limits(self):
+    def effort_limits(self) -> Array:
         """Effort limits, shape (n,), N m or N; NaN if the URDF states none."""
         return self._tree.limits[:, 3]
 
     @property
-    def is_continuous(self):
-        """Joints that turn without end, bool, shape (n,): revolute, with no position limit."""
-        kinds = dict(zip(self._tree.moving_joint_names, self._tree.joint_type, strict=True))
-        turns = [kinds[name] == REVOLUTE for name in self.joint_names]
-        return np.array(turns, dtype=bool) & np.isinf(self._tree.limits[:, :2]).all(axis=1)
+    def is_continuous(self) -> NDArray[np.bool_]:
+        """Whether a joint is revolute without position limits, bool, shape (n,)."""
+        independent = self._tree.is_independent
+        turns = np.empty(self._n, dtype=bool)
+        turns[self._tree.q_index[independent]] = ~self._tree.is_prismatic[independent]
+        return turns & np.isinf(self._tree.limits[:, :2]).all(axis=1)
 
     @property
-    def neutral_position(self):
+    def neutral_position(self) -> Array:
         """Zero, or the nearest position within the limits; shape (n,), rad or m."""
         return np.clip(np.zeros(self._n), self._tree.limits[:, 0], self._tree.limits[:, 1])
 
-    def with_gravity(self, gravity):
+    def with_gravity(self, gravity: ArrayLike) -> RobotModel:
         """
         Return the same robot under another gravity.
 
@@ -233,16 +254,22 @@ class RobotModel:
         """
         return self._with(gravity=gravity)
 
-    def with_payload(self, link, mass, com=(0.0, 0.0, 0.0), inertia=None):
+    def with_payload(
+        self,
+        link: str,
+        mass: float,
+        com: ArrayLike = (0.0, 0.0, 0.0),
+        inertia: ArrayLike | None = None,
+    ) -> RobotModel:
         """
-        Return the same robot with a payload on a link, in place of the one that it carries.
+        Return the same robot with a payload on a link, which replaces a previous payload.
 
         Parameters
         ----------
         link : str
-            Any link of the URDF; on one that no joint moves a payload has no effect.
+            Any link of the URDF; on a link fixed to the base a payload has no effect.
         mass : float
-            kg; 0 for the robot without payload, to the last bit as it was before.
+            kg; 0 for the robot without payload, equal to the original to the last bit.
         com : array_like, shape (3,)
             Center of mass in the link's frame, m.
         inertia : array_like, shape (3, 3), optional
@@ -258,7 +285,7 @@ class RobotModel:
         ArgumentError
             If the link is unknown, a shape is wrong or a number is not finite.
         InertiaError
-            If no real body has this mass and inertia; with every violated condition.
+            If this mass and inertia are physically impossible; lists every violated condition.
 
         References
         ----------
@@ -267,14 +294,14 @@ class RobotModel:
         """
         return self._with(payload=make_payload(self._tree.links, link, mass, com, inertia))
 
-    def with_rotor_inertia(self, rotor_inertia):
+    def with_rotor_inertia(self, rotor_inertia: ArrayLike) -> RobotModel:
         """
         Return the same robot with the inertia of its motors' rotors.
 
         Parameters
         ----------
         rotor_inertia : array_like, shape (n,), or float
-            As the joint feels it, so times the square of the gear ratio; kg m² or kg.
+            Reflected to the joint: times the square of the gear ratio; kg m² or kg.
 
         Returns
         -------
@@ -292,9 +319,14 @@ class RobotModel:
         """
         return self._with(rotor_inertia=rotor_inertia)
 
-    def with_friction(self, viscous=None, coulomb=None, smoothing_velocity=None):
+    def with_friction(
+        self,
+        viscous: ArrayLike | None = None,
+        coulomb: ArrayLike | None = None,
+        smoothing_velocity: ArrayLike | None = None,
+    ) -> RobotModel:
         """
-        Return the same robot with other friction; what is not given stays.
+        Return the same robot with other friction; parameters that are None stay.
 
         Parameters
         ----------
@@ -303,7 +335,7 @@ class RobotModel:
         coulomb : array_like, shape (n,), or float, optional
             Dry friction, N m or N.
         smoothing_velocity : array_like, shape (n,), or float, optional
-            rad/s or m/s, > 0: through zero, dry friction changes its sign as tanh does.
+            rad/s or m/s, > 0: dry friction is coulomb tanh(q̇ / smoothing_velocity).
 
         Returns
         -------
@@ -330,8 +362,8 @@ class RobotModel:
             )
         )
 
-    def _with(self, **changes):
-        arguments = {
+    def _with(self, **changes: Any) -> RobotModel:
+        arguments: dict[str, Any] = {
             'gravity': self._gravity,
             'payload': self._payload,
             'rotor_inertia': self._rotor_inertia,
@@ -342,61 +374,42 @@ class RobotModel:
         return type(self)(self._tree, **arguments)
 
     @property
-    def is_specialized(self):
+    def is_specialized(self) -> bool:
         """Whether machine code of this robot's own is in use."""
         return self._evaluation.specialization.code is not None
 
-    def specialize(self, wait=True, loads=False):
+    def specialize(self, wait: bool = True, with_payload_code: bool = False) -> bool:
         """
-        Ask for machine code of this robot's own, without waiting until it is used often.
+        Request machine code of this robot's own now, not only after frequent use.
 
         Parameters
         ----------
         wait : bool
             True: return when it is in use, after some seconds if it was never compiled on this
-            machine. False: return at once, and have another process compile it.
-        loads : bool
-            True: ask for the machine code that serves this robot under every payload and rotor
-            inertia too, so that the first of them finds it. A robot has it beside its own,
-            because its own, which knows that many numbers are zero, is faster.
+            machine. False: return immediately; another process compiles it.
+        with_payload_code : bool
+            True: request the machine code for every payload and rotor inertia of this robot too,
+            so that it is ready for the first payload. A robot has two codes because its own,
+            with many numbers folded to zero, is faster.
 
         Returns
         -------
         bool
-            Whether this model's is in use. It never is for robots of which one quantity takes
-            more than 15 000 operations (somewhere between 16 and 30 joints, depending on the
+            Whether this model's code is in use. It never is with `compile=False`, for robots with
+            more than 15 000 operations per quantity (from 16 to 30 joints on, depending on the
             robot's shape), on Pythons other than CPython 3.11 and later, and with
             DYNAMICS_NODE_SPECIALIZE=0.
 
         """
         specialization = self._evaluation.specialization
         if wait:
-            return specialization.wait(loads)
-        specialization.begin(loads)
+            return specialization.wait(with_payload_code)
+        specialization.begin(with_payload_code)
         return self.is_specialized
 
-    def _use(self, code):
-        # Machine code takes the place of methods. What it does not take, it hands to the
-        # evaluation, not to the method: a function that refers to its model would never be freed.
-        for name, shapes in SHAPES.items():
-            # A method of a subclass, or that somebody has put in its place, stays.
-            if getattr(type(self), name) is getattr(RobotModel, name) and name not in vars(self):
-                fallback = getattr(self._evaluation, name)
-                setattr(
-                    self,
-                    name,
-                    make_callable(
-                        code.loaded,
-                        name,
-                        shapes(self._n),
-                        fallback,
-                        getattr(RobotModel, name).__doc__,
-                        DynamicsTerms,
-                        self._evaluation.packed[1],
-                    ),
-                )
-
-    def mass_matrix(self, q, *, out=None, threads=None):
+    def mass_matrix(
+        self, q: ArrayLike, *, out: Array | None = None, threads: int | None = None
+    ) -> Array:
         """
         Return the joint-space mass matrix D(q).
 
@@ -405,10 +418,10 @@ class RobotModel:
         q : array_like, shape (..., n)
             Joint positions, rad or m.
         out : numpy.ndarray, optional
-            Where to put the answer: what an earlier call of this shape has returned. Large
-            arrays take longer to make than to fill.
+            The result of an earlier call of this shape, to be overwritten: allocating large arrays
+            takes longer than filling them.
         threads : int, optional
-            At most so many for a large batch; at least 1.
+            Largest number of threads for a large batch; at least 1.
 
         Returns
         -------
@@ -427,7 +440,7 @@ class RobotModel:
         """
         return self._evaluation.mass_matrix(q, out=out, threads=threads)
 
-    def coriolis_matrix(self, q, qd, *, threads=None):
+    def coriolis_matrix(self, q: ArrayLike, qd: ArrayLike, *, threads: int | None = None) -> Array:
         """
         Return the Coriolis matrix C(q, q̇) of Christoffel symbols: Ḋ = C + Cᵀ.
 
@@ -436,7 +449,7 @@ class RobotModel:
         q, qd : array_like, shape (..., n)
             Joint positions (rad or m) and velocities; their batch axes broadcast.
         threads : int, optional
-            At most so many for a large batch; at least 1.
+            Largest number of threads for a large batch; at least 1.
 
         Returns
         -------
@@ -446,7 +459,7 @@ class RobotModel:
         Raises
         ------
         ArgumentError
-            If a last axis is not n or batch axes do not fit.
+            If a last axis is not n or batch axes do not broadcast.
 
         References
         ----------
@@ -455,7 +468,9 @@ class RobotModel:
         """
         return self._evaluation.coriolis_matrix(q, qd, threads=threads)
 
-    def gravity_torque(self, q, *, out=None, threads=None):
+    def gravity_torque(
+        self, q: ArrayLike, *, out: Array | None = None, threads: int | None = None
+    ) -> Array:
         """
         Return the gravity torque G(q): the efforts that hold the robot still.
 
@@ -464,10 +479,10 @@ class RobotModel:
         q : array_like, shape (..., n)
             Joint positions, rad or m.
         out : numpy.ndarray, optional
-            Where to put the answer: what an earlier call of this shape has returned. Large
-            arrays take longer to make than to fill.
+            The result of an earlier call of this shape, to be overwritten: allocating large arrays
+            takes longer than filling them.
         threads : int, optional
-            At most so many for a large batch; at least 1.
+            Largest number of threads for a large batch; at least 1.
 
         Returns
         -------
@@ -486,9 +501,9 @@ class RobotModel:
         """
         return self._evaluation.gravity_torque(q, out=out, threads=threads)
 
-    def potential_energy(self, q):
+    def potential_energy(self, q: ArrayLike) -> Array:
         """
-        Return the potential energy V(q) of what joints move.
+        Return the potential energy V(q) of the moving bodies.
 
         Parameters
         ----------
@@ -512,7 +527,7 @@ class RobotModel:
         """
         return self._evaluation.potential_energy(q)
 
-    def kinetic_energy(self, q, qd):
+    def kinetic_energy(self, q: ArrayLike, qd: ArrayLike) -> Array:
         """
         Return the kinetic energy T = ½ q̇ᵀ D(q) q̇.
 
@@ -529,7 +544,7 @@ class RobotModel:
         Raises
         ------
         ArgumentError
-            If a last axis is not n or batch axes do not fit.
+            If a last axis is not n or batch axes do not broadcast.
 
         References
         ----------
@@ -538,7 +553,14 @@ class RobotModel:
         """
         return self._evaluation.kinetic_energy(q, qd)
 
-    def dynamics(self, q, qd, *, out=None, threads=None):
+    def dynamics(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        *,
+        out: DynamicsTerms | None = None,
+        threads: int | None = None,
+    ) -> DynamicsTerms:
         """
         Return D, C and G in one pass.
 
@@ -547,10 +569,10 @@ class RobotModel:
         q, qd : array_like, shape (..., n)
             Joint positions (rad or m) and velocities; their batch axes broadcast.
         out : DynamicsTerms, optional
-            Where to put the answer: what an earlier call of this shape has returned. Large
-            arrays take longer to make than to fill.
+            The result of an earlier call of this shape, to be overwritten: allocating large arrays
+            takes longer than filling them.
         threads : int, optional
-            At most so many for a large batch; at least 1.
+            Largest number of threads for a large batch; at least 1.
 
         Returns
         -------
@@ -560,7 +582,7 @@ class RobotModel:
         Raises
         ------
         ArgumentError
-            If a last axis is not n or batch axes do not fit.
+            If a last axis is not n or batch axes do not broadcast.
 
         References
         ----------
@@ -569,7 +591,15 @@ class RobotModel:
         """
         return self._evaluation.dynamics(q, qd, out=out, threads=threads)
 
-    def inverse_dynamics(self, q, qd, qdd, *, out=None, threads=None):
+    def inverse_dynamics(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        qdd: ArrayLike,
+        *,
+        out: Array | None = None,
+        threads: int | None = None,
+    ) -> Array:
         """
         Return the efforts of a motion, τ = D q̈ + C q̇ + G.
 
@@ -578,10 +608,10 @@ class RobotModel:
         q, qd, qdd : array_like, shape (..., n)
             Joint positions (rad or m), velocities, accelerations; batch axes broadcast.
         out : numpy.ndarray, optional
-            Where to put the answer: what an earlier call of this shape has returned. Large
-            arrays take longer to make than to fill.
+            The result of an earlier call of this shape, to be overwritten: allocating large arrays
+            takes longer than filling them.
         threads : int, optional
-            At most so many for a large batch; at least 1.
+            Largest number of threads for a large batch; at least 1.
 
         Returns
         -------
@@ -591,7 +621,7 @@ class RobotModel:
         Raises
         ------
         ArgumentError
-            If a last axis is not n or batch axes do not fit.
+            If a last axis is not n or batch axes do not broadcast.
 
         References
         ----------
@@ -600,9 +630,11 @@ class RobotModel:
         """
         return self._evaluation.inverse_dynamics(q, qd, qdd, out=out, threads=threads)
 
-    def forward_dynamics(self, q, qd, tau, *, threads=None):
+    def forward_dynamics(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, threads: int | None = None
+    ) -> Array:
         """
-        Return the accelerations that efforts cause, q̈ = D⁻¹ (τ - C q̇ - G).
+        Return the accelerations caused by efforts, q̈ = D⁻¹ (τ - C q̇ - G).
 
         Parameters
         ----------
@@ -611,7 +643,7 @@ class RobotModel:
         tau : array_like, shape (..., n)
             Joint efforts, N m or N; batch axes broadcast.
         threads : int, optional
-            At most so many for a large batch; at least 1.
+            Largest number of threads for a large batch; at least 1.
 
         Returns
         -------
@@ -621,10 +653,9 @@ class RobotModel:
         Raises
         ------
         ArgumentError
-            If a last axis is not n or batch axes do not fit.
+            If a last axis is not n or batch axes do not broadcast.
         SingularMassMatrixError
-            If D is not positive definite beyond rounding: a joint moves nothing that has
-            inertia.
+            If D is not positive definite beyond rounding: a joint moves no inertia.
 
         References
         ----------
@@ -633,9 +664,9 @@ class RobotModel:
         """
         return self._evaluation.forward_dynamics(q, qd, tau, threads=threads)
 
-    def friction_torque(self, qd):
+    def friction_torque(self, qd: ArrayLike) -> Array:
         """
-        Return the efforts that friction takes, viscous q̇ + coulomb tanh(q̇ / smoothing).
+        Return the efforts that overcome friction, viscous q̇ + coulomb tanh(q̇ / smoothing).
 
         Parameters
         ----------
@@ -645,7 +676,7 @@ class RobotModel:
         Returns
         -------
         numpy.ndarray, shape (..., n)
-            N m or N, of the sign of q̇: what a motor has to add to `inverse_dynamics`.
+            N m or N, with the sign of q̇; to be added to `inverse_dynamics`.
 
         Raises
         ------
@@ -657,10 +688,10 @@ class RobotModel:
         docs/mathematics.md, equation (27).
 
         """
-        lead, [qd] = self._evaluation.states(qd=qd)
-        return self._friction.torque(qd).reshape(*lead, self._n)
+        batch_shape, [velocities] = self._evaluation.states(qd=qd)
+        return self._friction.torque(velocities).reshape(*batch_shape, self._n)
 
-    def jacobian(self, q, link, point=(0.0, 0.0, 0.0)):
+    def jacobian(self, q: ArrayLike, link: str, point: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
         """
         Return the Jacobian of a point of a link: its velocity is J(q) q̇.
 
@@ -677,7 +708,7 @@ class RobotModel:
         -------
         numpy.ndarray, shape (..., 6, n)
             Along the axes of the base frame: three rows of the point's velocity, m/s, then three
-            of the link's angular velocity, rad/s. Jᵀ takes a force and a moment at the point to
+            of the link's angular velocity, rad/s. Jᵀ maps a force and a moment at the point to
             joint efforts.
 
         Raises
@@ -693,9 +724,9 @@ class RobotModel:
         check_link(self._tree.links, link)
         return self._evaluation.jacobian(q, self._tree.links[link], point)
 
-    def link_pose(self, q, link):
+    def link_pose(self, q: ArrayLike, link: str) -> Array:
         """
-        Return where a link is: the transform from its frame to the base frame.
+        Return the pose of a link: the transform from its frame to the base frame.
 
         Parameters
         ----------
@@ -722,9 +753,9 @@ class RobotModel:
         check_link(self._tree.links, link)
         return self._evaluation.link_pose(q, self._tree.links[link])
 
-    def body_poses(self, q):
+    def body_poses(self, q: ArrayLike) -> Array:
         """
-        Return where all moving bodies are: the transforms from their frames to the base frame.
+        Return the poses of all moving bodies: the transforms from their frames to the base frame.
 
         Parameters
         ----------
@@ -748,7 +779,13 @@ class RobotModel:
         """
         return self._evaluation.body_poses(q)
 
-    def trajectory_effort(self, time, positions, velocities=None, accelerations=None):
+    def trajectory_effort(
+        self,
+        time: ArrayLike,
+        positions: ArrayLike,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+    ) -> Array:
         """
         Return the efforts along a trajectory: inverse dynamics at each of its points.
 
@@ -759,13 +796,13 @@ class RobotModel:
         positions : array_like, shape (N, n)
             Joint positions, rad or m.
         velocities, accelerations : array_like, shape (N, n), optional
-            rad/s or m/s, rad/s² or m/s². A point without them is a row of NaN. What is missing
-            is obtained by a spline: see `complete_trajectory`, which also says what it was.
+            rad/s or m/s, rad/s² or m/s². A point without them is a row of NaN. Missing values
+            come from a spline: see `complete_trajectory`, which also reports their source.
 
         Returns
         -------
         numpy.ndarray, shape (N, n)
-            N m or N. `over_limit` tells which of them are too much.
+            N m or N. `over_limit` compares them with limits.
 
         Raises
         ------
@@ -787,15 +824,21 @@ class RobotModel:
         return self.inverse_dynamics(motion.positions, motion.velocities, motion.accelerations)
 
     def max_payload(
-        self, q, link, point=(0.0, 0.0, 0.0), *, qd=None, qdd=None, effort_limits=None
-    ):
+        self,
+        q: ArrayLike,
+        link: str,
+        point: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        qd: ArrayLike | None = None,
+        qdd: ArrayLike | None = None,
+        effort_limits: ArrayLike | None = None,
+    ) -> MaxPayload:
         """
-        Return the largest point mass that a link may carry within all effort limits.
+        Return the largest point mass on a link within all effort limits.
 
-        Along the real gravity vector, whatever the mounting. Every mass from zero up to this one
-        is within the limits too. It takes the place of a payload that the model has, which does
-        not count, nor does friction. A trajectory is a batch: `least()` of the answer is its
-        largest payload.
+        It takes the model's gravity vector, for any mounting. Every smaller mass is within the
+        limits too. The mass replaces a payload of the model; friction is ignored. A trajectory is
+        a batch: `least()` of the result is its largest payload.
 
         Parameters
         ----------
@@ -804,17 +847,17 @@ class RobotModel:
         link : str
             A link of the URDF.
         point : array_like, shape (3,)
-            Where the mass is, in the link's frame, m.
+            Position of the mass in the link's frame, m.
         qd, qdd : array_like, shape (..., n), optional
             Joint velocities and accelerations; zero if not given. Batch axes broadcast.
         effort_limits : array_like, shape (n,), optional
-            N m or N, those of the URDF if not given. NaN: the joint has no limit.
+            N m or N; by default those of the URDF. NaN: the joint has no limit.
 
         Returns
         -------
         MaxPayload
-            Unpacks as mass (...), kg, and joint (...), the index of the joint that allows no
-            more. Over a limit already: 0 and the joint that is most so. No limit in the way:
+            Unpacks as mass (...), kg, and joint (...), the index of the limiting joint. Over a
+            limit without the mass: 0 and the joint with the largest excess. Without limit:
             infinite and -1.
 
         Raises
@@ -828,14 +871,33 @@ class RobotModel:
         docs/mathematics.md, equation (32).
 
         """
-        rest = np.zeros(self._n)
+        zeros = np.zeros(self._n)
         unloaded = self if self._payload is None else self._with(payload=None)
         return max_payload(
             unloaded,
             q,
             link,
             point,
-            rest if qd is None else qd,
-            rest if qdd is None else qdd,
+            zeros if qd is None else qd,
+            zeros if qdd is None else qdd,
             self.effort_limits if effort_limits is None else effort_limits,
         )
+
+
+def _install(model: RobotModel, code: RobotCode) -> None:
+    # Machine code replaces methods of the instance. Arguments that it does not cover go to the
+    # evaluation, not to the method: a function that refers to its model would never be freed.
+    evaluation = model._evaluation
+    for name, shapes in SHAPES.items():
+        method = getattr(RobotModel, name)
+        # Methods of a subclass, and functions assigned to the instance, stay.
+        if getattr(type(model), name) is method and name not in vars(model):
+            function = code.python_entry(
+                name,
+                shapes(len(model.joint_names)),
+                getattr(evaluation, name),
+                method.__doc__,
+                DynamicsTerms,
+                evaluation.packed.numbers,
+            )
+            setattr(model, name, function)

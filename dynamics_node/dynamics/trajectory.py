@@ -1,9 +1,11 @@
-"""Trajectories of points: the derivatives that are missing, by a spline."""
+"""Trajectories of points; missing velocities and accelerations by a spline."""
 
 from dataclasses import dataclass
 import itertools
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ArgumentError
 
@@ -20,40 +22,44 @@ class Trajectory:
     positions, velocities, accelerations : numpy.ndarray, shape (N, n)
         rad or m, per s, per s².
     obtained : str
-        In words, what was not given and where it comes from; empty if all was given.
+        Message on the source of missing derivatives; empty if all were given.
 
     """
 
-    time: np.ndarray
-    positions: np.ndarray
-    velocities: np.ndarray
-    accelerations: np.ndarray
+    time: NDArray[np.float64]
+    positions: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    accelerations: NDArray[np.float64]
     obtained: str
 
 
-def complete_trajectory(time, positions, velocities=None, accelerations=None):
+def complete_trajectory(
+    time: ArrayLike,
+    positions: ArrayLike,
+    velocities: ArrayLike | None = None,
+    accelerations: ArrayLike | None = None,
+) -> Trajectory:
     """
-    Complete a trajectory by the velocities and accelerations that are missing.
+    Complete a trajectory by its missing velocities and accelerations.
 
-    What is given is kept as it is. A point without velocities (or accelerations) is a row of NaN.
+    Given values are kept. A point without velocities (or accelerations) is a row of NaN.
 
-    - Velocities that are missing are the slopes of the cubic spline through the positions, which
-      has the velocities that are given. Nothing is assumed about an end without a velocity: the
-      two outermost pieces are one cubic there.
-    - Accelerations that are missing are the second derivatives of that spline, if no velocity is
-      given between the first and the last point. Otherwise they are the slopes of the cubic
-      spline through the velocities, which has the accelerations that are given: two derivatives
-      of rounded positions would be mostly rounding.
-    - One point: what is missing is zero, the robot rests. Two points: a line, or with velocities
-      a parabola or cubic. Three points: a parabola, or with velocities at the ends a cubic
-      spline.
+    - Missing velocities are the slopes of the cubic spline through the positions with the given
+      velocities. An end without a velocity is free: the two outermost pieces are one cubic there.
+    - Missing accelerations are the second derivatives of that spline, if no velocity is given
+      between the first and the last point. Otherwise they are the slopes of the cubic spline
+      through the velocities with the given accelerations: two derivatives of rounded positions
+      would be mostly rounding.
+    - One point: missing values are zero, the robot is at rest. Two points: a line, or with
+      velocities a parabola or cubic. Three points: a parabola, or with velocities at the ends a
+      cubic spline.
 
-    Positions count on beyond a full turn: a step from 3.1 to -3.1 rad is a turn backwards.
+    Positions are not wrapped at a full turn: a step from 3.1 to -3.1 rad is a turn backwards.
 
     Parameters
     ----------
     time : array_like, shape (N,)
-        s; strictly increasing if anything is missing.
+        s; strictly increasing if velocities or accelerations are missing.
     positions : array_like, shape (N, n)
         rad or m.
     velocities, accelerations : array_like, shape (N, n), optional
@@ -75,25 +81,25 @@ def complete_trajectory(time, positions, velocities=None, accelerations=None):
     docs/mathematics.md, equations (30) and (31).
 
     """
-    time, positions = _points(time, positions)
-    velocities, has_velocity = _derivatives('velocities', velocities, positions.shape)
-    accelerations, has_acceleration = _derivatives('accelerations', accelerations, positions.shape)
+    t, q = _points(time, positions)
+    qd, has_velocity = _derivatives('velocities', velocities, q.shape)
+    qdd, has_acceleration = _derivatives('accelerations', accelerations, q.shape)
     obtained = ''
     if not (has_velocity.all() and has_acceleration.all()):
-        if len(time) > 1:
-            _require_increasing(time)
-        with np.errstate(all='ignore'):  # what overflows is told below
-            obtained = _fill(
-                time, positions, velocities, has_velocity, accelerations, has_acceleration
-            )
-        _require_finite(velocities, accelerations)
-    for array in (time, positions, velocities, accelerations):
+        if len(t) > 1:
+            _require_increasing(t)
+        with np.errstate(all='ignore'):  # overflow is reported below
+            obtained = _fill(t, q, qd, has_velocity, qdd, has_acceleration)
+        _require_finite(qd, qdd)
+    for array in (t, q, qd, qdd):
         array.flags.writeable = False
-    return Trajectory(time, positions, velocities, accelerations, obtained)
+    return Trajectory(t, q, qd, qdd, obtained)
 
 
-def _points(time, positions):
-    time, positions = _numbers('time', time), _numbers('positions', positions)
+def _points(
+    times: ArrayLike, values: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    time, positions = _numbers('time', times), _numbers('positions', values)
     if time.ndim != 1 or len(time) == 0:
         raise ArgumentError(f'time: expected shape (N,) with at least one point, got {time.shape}')
     if positions.ndim != 2 or len(positions) != len(time):
@@ -107,35 +113,39 @@ def _points(time, positions):
     return time, positions
 
 
-def _derivatives(name, values, shape):
-    # The values, and at which points there are any.
-    if values is None:
+def _derivatives(
+    name: str, given: ArrayLike | None, shape: tuple[int, ...]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    # The values, shape (N, n), and the points that have them, shape (N,).
+    if given is None:
         return np.full(shape, np.nan), np.zeros(shape[0], dtype=bool)
-    values = _numbers(name, values)
+    values = _numbers(name, given)
     if values.shape != shape:
         raise ArgumentError(
             f'{name}: expected the shape of positions, {shape}, got {values.shape}'
         )
-    given = ~np.isnan(values).all(axis=1)
+    has_values: NDArray[np.bool_] = ~np.isnan(values).all(axis=1)
     _refuse(
         name,
         values,
-        given[:, None] & ~np.isfinite(values),
+        has_values[:, None] & ~np.isfinite(values),
         'a finite number, or NaN for all joints of a point where they are missing',
     )
-    return values, given
+    return values, has_values
 
 
-def _numbers(name, values):
+def _numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
     try:
         return np.array(values, dtype=float, order='C')
     except (TypeError, ValueError) as error:
         raise ArgumentError(
-            f'{name}: expected numbers, as many for each point: {error}'
+            f'{name}: expected numbers, the same number for each point: {error}'
         ) from error
 
 
-def _refuse(name, values, wrong, expected):
+def _refuse(
+    name: str, values: NDArray[np.float64], wrong: NDArray[np.bool_], expected: str
+) -> None:
     if wrong.any():
         point, joint = np.argwhere(wrong)[0]
         raise ArgumentError(
@@ -144,7 +154,7 @@ def _refuse(name, values, wrong, expected):
         )
 
 
-def _require_increasing(time):
+def _require_increasing(time: NDArray[np.float64]) -> None:
     late = np.flatnonzero(~(np.diff(time) > 0.0))
     if len(late):
         i = int(late[0]) + 1
@@ -155,7 +165,7 @@ def _require_increasing(time):
         )
 
 
-def _require_finite(velocities, accelerations):
+def _require_finite(velocities: NDArray[np.float64], accelerations: NDArray[np.float64]) -> None:
     finite = (np.isfinite(velocities) & np.isfinite(accelerations)).all(axis=1)
     if not finite.all():
         raise ArgumentError(
@@ -164,13 +174,20 @@ def _require_finite(velocities, accelerations):
         )
 
 
-def _fill(time, positions, velocities, has_velocity, accelerations, has_acceleration):
-    # Fill in what is missing, and say in words where it comes from.
+def _fill(
+    time: NDArray[np.float64],
+    positions: NDArray[np.float64],
+    velocities: NDArray[np.float64],
+    has_velocity: NDArray[np.bool_],
+    accelerations: NDArray[np.float64],
+    has_acceleration: NDArray[np.bool_],
+) -> str:
+    # Fill in missing values, and return a message on their source.
     count = len(time)
     if count == 1:
         velocities[~has_velocity] = 0.0
         accelerations[~has_acceleration] = 0.0
-        return _words(
+        return _message(
             'velocities',
             has_velocity,
             'zero, the only point is at rest',
@@ -186,7 +203,7 @@ def _fill(time, positions, velocities, has_velocity, accelerations, has_accelera
         curvature = _second_derivatives(time, positions, velocities)
         accelerations[~has_acceleration] = curvature[~has_acceleration]
         source = 'the second derivatives of a cubic spline through the positions'
-    return _words(
+    return _message(
         'velocities',
         has_velocity,
         'the slopes of a cubic spline through the positions',
@@ -196,8 +213,10 @@ def _fill(time, positions, velocities, has_velocity, accelerations, has_accelera
     )
 
 
-def _second_derivatives(time, values, slopes):
-    # (31) of the piece to the right of each point; the last point has only one to its left.
+def _second_derivatives(
+    time: NDArray[np.float64], values: NDArray[np.float64], slopes: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    # (31) of the piece to the right of each point, at the last point of the piece to its left.
     h = np.diff(time)[:, None]
     secant = np.diff(values, axis=0) / h
     begin = (6.0 * secant - 4.0 * slopes[:-1] - 2.0 * slopes[1:]) / h
@@ -205,7 +224,8 @@ def _second_derivatives(time, values, slopes):
     return np.concatenate((begin, end[None]))
 
 
-def _words(*parts):
+def _message(*parts: Any) -> str:
+    # From name, points with given values, and source of the others, in turn.
     sentences = []
     for name, given, source in zip(parts[::3], parts[1::3], parts[2::3], strict=True):
         missing = int(np.count_nonzero(~given))
@@ -215,13 +235,18 @@ def _words(*parts):
     return '; '.join(sentences)
 
 
-def spline_slopes(time, values, given, slopes):
+def spline_slopes(
+    time: NDArray[np.float64],
+    values: NDArray[np.float64],
+    given: NDArray[np.bool_],
+    slopes: NDArray[np.float64],
+) -> None:
     """
-    Compute the slopes of the cubic spline through some values where they are not given.
+    Compute the missing slopes of the cubic spline through some values.
 
-    The spline is twice differentiable at every point whose slope is not given. At an end without
-    a slope the two outermost pieces are one cubic; if that does not fix the slope, because there
-    are no more points, the piece is a parabola, or a line.
+    The spline is twice differentiable at every point without a given slope. At an end without a
+    slope the two outermost pieces are one cubic; with too few points for that the piece is a
+    parabola, or a line.
 
     Parameters
     ----------
@@ -230,17 +255,16 @@ def spline_slopes(time, values, given, slopes):
     values : numpy.ndarray, shape (N, n)
         n functions of time.
     given : numpy.ndarray of bool, shape (N,)
-        Where the slopes are known.
+        The points with known slopes.
     slopes : numpy.ndarray, shape (N, n)
-        Overwritten where they are not given; unit of the values per s. NaN if they are beyond
-        what numbers can hold.
+        Overwritten where they are not given; unit of the values per s. NaN on overflow.
 
     References
     ----------
     docs/mathematics.md, equation (30).
 
     """
-    # A point whose slope is known divides the spline into two that know nothing of each other.
+    # A point with a known slope divides the spline into two independent ones.
     last = len(time) - 1
     ends = np.union1d(np.flatnonzero(given), [0, last])
     for begin, end in itertools.pairwise(ends):
@@ -253,16 +277,21 @@ def spline_slopes(time, values, given, slopes):
             )
 
 
-def _solve_slopes(time, values, given, slopes):
+def _solve_slopes(
+    time: NDArray[np.float64],
+    values: NDArray[np.float64],
+    given: NDArray[np.bool_],
+    slopes: NDArray[np.float64],
+) -> None:
     if len(time) == 2:
-        # scipy would take the secant for the slope of an end that is free.
+        # scipy would take the secant for the slope of a free end.
         secant = (values[1] - values[0]) / (time[1] - time[0])
         if not given[0]:
             slopes[0] = 2.0 * secant - slopes[1] if given[1] else secant
         if not given[1]:
             slopes[1] = 2.0 * secant - slopes[0]
         return
-    # Loading it takes as long as loading the rest of the library.
+    # Imported here: it takes as long as the rest of the library.
     from scipy.interpolate import CubicSpline
 
     kinds = tuple(
@@ -272,5 +301,5 @@ def _solve_slopes(time, values, given, slopes):
     inner = slice(1 if given[0] else 0, -1 if given[1] else None)
     try:
         slopes[inner] = CubicSpline(time, values, bc_type=kinds)(time, 1)[inner]
-    except ValueError:  # slopes beyond what numbers can hold
+    except ValueError:  # overflow
         slopes[inner] = np.nan

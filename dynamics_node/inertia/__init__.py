@@ -1,8 +1,8 @@
 """
-Inertia: 4x4 pseudo-inertia matrices of rigid bodies. No robot, no joint in here.
+Inertia: 4x4 pseudo-inertia matrices of rigid bodies, without robots and joints.
 
-What may change here: how a body's J is built, converted, combined and judged. Every other
-room of the package builds on these functions, so their conventions (frames, signs) are fixed.
+What may change here: construction, conversion, combination and checks of a body's J. The
+conventions (frames, signs) are fixed, because every other room depends on them.
 
 """
 

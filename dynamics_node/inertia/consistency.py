@@ -3,54 +3,55 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from .pseudo_inertia import inertia_tensor_at_com
+from .pseudo_inertia import inertia_tensor_at_com, symmetric
 from ..errors import ArgumentError, InertiaError
 
-# Rounding moves eigenvalues by this much, relative to the trace of J.
+# Largest change of an eigenvalue by rounding, relative to the trace of J.
 RELATIVE_TOLERANCE = 10.0 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
 class ConsistencyReport:
     """
-    What was found about one pseudo-inertia matrix.
+    Physical consistency of one pseudo-inertia matrix.
 
     Attributes
     ----------
     violations : tuple of str
         One sentence per violated condition: expected, got. Empty for a real body.
     smallest_eigenvalue : float
-        Of J; NaN if J has entries that are not finite. A real body exists exactly when it
-        is >= 0 (to rounding).
+        Smallest eigenvalue of J; NaN if J has entries that are not finite. A real body exists
+        exactly when it is >= 0 (to rounding).
     principal_moments : numpy.ndarray, shape (3,)
         Principal moments of inertia about the center of mass, kg m², ascending.
 
     """
 
-    violations: tuple
+    violations: tuple[str, ...]
     smallest_eigenvalue: float
-    principal_moments: np.ndarray
+    principal_moments: NDArray[np.float64]
 
     @property
-    def is_physical(self):
+    def is_physical(self) -> bool:
         """True if no condition is violated."""
         return not self.violations
 
 
-def consistency_report(matrix):
+def consistency_report(matrix: ArrayLike) -> ConsistencyReport:
     """
-    Judge a pseudo-inertia matrix and name every condition that it violates.
+    Check a pseudo-inertia matrix and list every violated condition.
 
     Parameters
     ----------
     matrix : array_like, shape (4, 4)
-        J in any frame: the verdict does not depend on the frame.
+        J in any frame; the result does not depend on the frame.
 
     Returns
     -------
     ConsistencyReport
-        Never raises for wrong values: NaN, asymmetry and negative mass are violations.
+        NaN, asymmetry and negative mass are violations, no exceptions.
 
     Raises
     ------
@@ -78,26 +79,27 @@ def consistency_report(matrix):
         )
     if matrix[3, 3] < 0.0:
         violations.append(f'mass is {matrix[3, 3]:.6g} kg, must be >= 0')
-    principal = np.linalg.eigvalsh(_symmetric(inertia_tensor_at_com(matrix)))
+    tensor = symmetric(inertia_tensor_at_com(matrix))
+    principal = np.asarray(np.linalg.eigvalsh(tensor), dtype=float)
     violations.extend(tensor_violations(principal, rounding_of(matrix)))
-    smallest = float(np.linalg.eigvalsh(_symmetric(matrix))[0])
+    smallest = float(np.linalg.eigvalsh(symmetric(matrix))[0])
     if smallest < -rounding_of(matrix):
         violations.append(f'smallest eigenvalue of J is {smallest:.3g}, must be >= 0')
     return ConsistencyReport(tuple(violations), smallest, principal)
 
 
-def rounding_of(matrix):
-    """Return how far rounding may move an eigenvalue of a pseudo-inertia matrix below 0."""
+def rounding_of(matrix: NDArray[np.float64]) -> float:
+    """Return the largest rounding error of an eigenvalue of J, shape (4, 4), kg m²."""
     return RELATIVE_TOLERANCE * float(np.abs(np.trace(matrix)))
 
 
-def tensor_violations(principal, tolerance):
+def tensor_violations(principal: NDArray[np.float64], tolerance: float) -> list[str]:
     """
-    Name the conditions that the principal moments of inertia violate.
+    Return the conditions that principal moments of inertia violate.
 
     Parameters
     ----------
-    principal : array_like, shape (3,)
+    principal : numpy.ndarray, shape (3,)
         Principal moments about the center of mass, kg m², ascending.
     tolerance : float
         kg m²; see `rounding_of`.
@@ -105,7 +107,7 @@ def tensor_violations(principal, tolerance):
     Returns
     -------
     list of str
-        Empty if they are those of a real body.
+        One sentence each; empty for a real body.
 
     """
     smallest, middle, largest = principal
@@ -119,7 +121,7 @@ def tensor_violations(principal, tolerance):
     return []
 
 
-def check_physical(matrix):
+def check_physical(matrix: ArrayLike) -> None:
     """
     Raise if no real body exists for a pseudo-inertia matrix.
 
@@ -131,7 +133,7 @@ def check_physical(matrix):
     Raises
     ------
     InertiaError
-        With every violated condition.
+        With all violated conditions.
     ArgumentError
         If the shape is not (4, 4).
 
@@ -139,7 +141,3 @@ def check_physical(matrix):
     report = consistency_report(matrix)
     if not report.is_physical:
         raise InertiaError(report.violations)
-
-
-def _symmetric(matrix):
-    return 0.5 * (matrix + matrix.T)

@@ -1,13 +1,24 @@
-"""The definition: pseudo-inertia matrices by numerical integration over the body."""
+"""Pseudo-inertia matrices by their definition: numerical integration over the body."""
+
+from collections.abc import Callable, Iterator
 
 import numpy as np
+from numpy.typing import NDArray
+
+_Limits = tuple[float, float]
 
 
-def pseudo_inertia_by_integration(density, x_range, y_range, z_range, order=16):
+def pseudo_inertia_by_integration(
+    density: float | Callable[[float, float, float], float],
+    x_range: _Limits,
+    y_range: _Limits | Callable[[float], _Limits],
+    z_range: _Limits | Callable[[float, float], _Limits],
+    order: int = 16,
+) -> NDArray[np.float64]:
     """
     Return the pseudo-inertia matrix of a body from its density, by a triple integral.
 
-    Independent of the closed forms: it is here to check them, and for bodies that have none.
+    Independent of the closed forms, to check them, and for bodies without closed form.
 
     Parameters
     ----------
@@ -20,8 +31,8 @@ def pseudo_inertia_by_integration(density, x_range, y_range, z_range, order=16):
     z_range : (float, float) or callable(x, y)
         Limits of z, m; a callable returns the pair at x, y.
     order : int
-        Nodes per direction; 16 reaches machine precision where density and limits are smooth
-        inside the ranges (limits may start and end with a vertical tangent, as a circle does).
+        Nodes per direction; 16 reaches machine precision if density and limits are smooth inside
+        the ranges (limits may start and end with a vertical tangent, as those of a circle).
 
     Returns
     -------
@@ -38,7 +49,7 @@ def pseudo_inertia_by_integration(density, x_range, y_range, z_range, order=16):
     z_limits = z_range if callable(z_range) else lambda x, y: z_range
     unit_nodes, unit_weights = _nodes(order)
 
-    def on(limits):
+    def on(limits: _Limits) -> Iterator[tuple[float, float]]:
         center, half = 0.5 * (limits[1] + limits[0]), 0.5 * (limits[1] - limits[0])
         return zip(center + half * unit_nodes, half * unit_weights, strict=True)
 
@@ -51,9 +62,9 @@ def pseudo_inertia_by_integration(density, x_range, y_range, z_range, order=16):
     return matrix
 
 
-def _nodes(order):
-    # Gauss-Legendre in the angle of t = sin(angle): a boundary like sqrt(r² - y²), which has
-    # no derivative at its ends, becomes a cosine and converges as fast as a smooth one.
+def _nodes(order: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    # Gauss-Legendre in the angle of t = sin(angle): a boundary like sqrt(r² - y²), without
+    # derivative at its ends, becomes a cosine and converges as fast as a smooth one.
     t, weights = np.polynomial.legendre.leggauss(order)
     angle = 0.5 * np.pi * t
     return np.sin(angle), weights * 0.5 * np.pi * np.cos(angle)

@@ -1,11 +1,14 @@
-"""Pseudo-inertia matrices: build, take apart, move to another frame, add."""
+"""Pseudo-inertia matrices: build, decompose, transform, add."""
+
+from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ArgumentError
 
 
-def planar_moments(tensor):
+def planar_moments(tensor: ArrayLike) -> NDArray[np.float64]:
     """
     Return the second moments about planes from the inertia tensor about axes.
 
@@ -32,10 +35,11 @@ def planar_moments(tensor):
 
     """
     tensor = _shaped('inertia tensor', tensor, (3, 3))
-    return 0.5 * np.trace(tensor) * np.eye(3) - tensor
+    trace: float = np.trace(tensor)
+    return 0.5 * trace * np.eye(3) - tensor
 
 
-def axial_moments(sigma):
+def axial_moments(sigma: ArrayLike) -> NDArray[np.float64]:
     """
     Return the inertia tensor about axes from the second moments about planes.
 
@@ -60,10 +64,11 @@ def axial_moments(sigma):
 
     """
     sigma = _shaped('matrix of planar moments', sigma, (3, 3))
-    return np.trace(sigma) * np.eye(3) - sigma
+    trace: float = np.trace(sigma)
+    return trace * np.eye(3) - sigma
 
 
-def steiner(tensor_at_com, mass, com):
+def steiner(tensor_at_com: ArrayLike, mass: float, com: ArrayLike) -> NDArray[np.float64]:
     """
     Return the inertia tensor about the frame's origin from the one about the center of mass.
 
@@ -96,11 +101,13 @@ def steiner(tensor_at_com, mass, com):
     return tensor_at_com + mass * (r @ r * np.eye(3) - np.outer(r, r))
 
 
-def pseudo_inertia(mass, com, tensor_at_com, rpy=(0.0, 0.0, 0.0)):
+def pseudo_inertia(
+    mass: float, com: ArrayLike, tensor_at_com: ArrayLike, rpy: ArrayLike = (0.0, 0.0, 0.0)
+) -> NDArray[np.float64]:
     """
-    Return the pseudo-inertia matrix of a body from what a URDF <inertial> says.
+    Return the pseudo-inertia matrix of a body from the values of a URDF <inertial>.
 
-    The values are taken as they are; `check_physical` judges them.
+    The values are not checked; see `check_physical`.
 
     Parameters
     ----------
@@ -138,7 +145,7 @@ def pseudo_inertia(mass, com, tensor_at_com, rpy=(0.0, 0.0, 0.0)):
     return matrix
 
 
-def mass_and_com(matrix):
+def mass_and_com(matrix: ArrayLike) -> tuple[float, NDArray[np.float64]]:
     """
     Return mass and center of mass from a pseudo-inertia matrix.
 
@@ -152,7 +159,7 @@ def mass_and_com(matrix):
     mass : float
         kg.
     com : numpy.ndarray, shape (3,)
-        In the same frame, m; zeros for a body without mass, which has no center.
+        In the same frame, m; zeros for a body without mass.
 
     Raises
     ------
@@ -165,7 +172,7 @@ def mass_and_com(matrix):
     return mass, matrix[:3, 3] / mass if mass != 0.0 else np.zeros(3)
 
 
-def inertia_tensor_at_com(matrix):
+def inertia_tensor_at_com(matrix: ArrayLike) -> NDArray[np.float64]:
     """
     Return the inertia tensor about the center of mass from a pseudo-inertia matrix.
 
@@ -194,7 +201,7 @@ def inertia_tensor_at_com(matrix):
     return axial_moments(matrix[:3, :3] - mass * np.outer(com, com))
 
 
-def transform_pseudo_inertia(matrix, transform):
+def transform_pseudo_inertia(matrix: ArrayLike, transform: ArrayLike) -> NDArray[np.float64]:
     """
     Return a pseudo-inertia matrix in another frame.
 
@@ -222,23 +229,22 @@ def transform_pseudo_inertia(matrix, transform):
     """
     matrix = _shaped('pseudo-inertia', matrix, (4, 4))
     transform = _shaped('transform', transform, (4, 4))
-    moved = transform @ matrix @ transform.T
-    return 0.5 * (moved + moved.T)
+    return symmetric(transform @ matrix @ transform.T)
 
 
-def combine(bodies):
+def combine(bodies: Iterable[tuple[ArrayLike, ArrayLike]]) -> NDArray[np.float64]:
     """
     Return the pseudo-inertia matrix of rigidly joined bodies.
 
     Parameters
     ----------
     bodies : iterable of (matrix, transform)
-        For each body its J, shape (4, 4), and its transform to the common frame, shape (4, 4).
+        J of each body, shape (4, 4), and its transform to the common frame, shape (4, 4), m.
 
     Returns
     -------
     numpy.ndarray, shape (4, 4)
-        Sum of T J Tᵀ; zeros for no body at all.
+        Sum of T J Tᵀ; zeros without bodies.
 
     Raises
     ------
@@ -256,7 +262,7 @@ def combine(bodies):
     return total
 
 
-def rotation_from_rpy(rpy):
+def rotation_from_rpy(rpy: ArrayLike) -> NDArray[np.float64]:
     """
     Return the rotation of URDF's roll, pitch, yaw (about the fixed x, then y, then z axis).
 
@@ -289,7 +295,13 @@ def rotation_from_rpy(rpy):
     )
 
 
-def _shaped(name, value, shape):
+def symmetric(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the symmetric part of a square matrix: removes an asymmetry by rounding."""
+    result: NDArray[np.float64] = 0.5 * (matrix + matrix.T)
+    return result
+
+
+def _shaped(name: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
     array = np.asarray(value, dtype=float)
     if array.shape != shape:
         raise ArgumentError(f'{name}: expected shape {shape}, got {array.shape}')

@@ -1,12 +1,17 @@
-"""Closed forms: pseudo-inertia matrices of homogeneous solids."""
+"""Closed forms of the pseudo-inertia matrices of homogeneous solids."""
+
+from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .pseudo_inertia import transform_pseudo_inertia
 from ..errors import ArgumentError
 
 
-def cylinder(mass, radius, length, transform=None):
+def cylinder(
+    mass: float, radius: float, length: float, transform: ArrayLike | None = None
+) -> NDArray[np.float64]:
     """
     Return the pseudo-inertia matrix of a homogeneous cylinder along the z axis.
 
@@ -17,7 +22,7 @@ def cylinder(mass, radius, length, transform=None):
     radius, length : float
         m, > 0.
     transform : array_like, shape (4, 4), optional
-        Frame of the cylinder (origin in its center, axis z) → frame of the answer.
+        Frame of the cylinder (origin in its center, axis z) → frame of the result, m.
 
     Returns
     -------
@@ -39,7 +44,7 @@ def cylinder(mass, radius, length, transform=None):
     return _placed(mass, (across, across, length**2 / 12.0), transform)
 
 
-def box(mass, size, transform=None):
+def box(mass: float, size: ArrayLike, transform: ArrayLike | None = None) -> NDArray[np.float64]:
     """
     Return the pseudo-inertia matrix of a homogeneous box.
 
@@ -50,7 +55,7 @@ def box(mass, size, transform=None):
     size : array_like, shape (3,)
         Edge lengths along x, y, z, m, > 0.
     transform : array_like, shape (4, 4), optional
-        Frame of the box (origin in its center) → frame of the answer.
+        Frame of the box (origin in its center) → frame of the result, m.
 
     Returns
     -------
@@ -60,7 +65,7 @@ def box(mass, size, transform=None):
     Raises
     ------
     ArgumentError
-        If a value is not finite and > 0, or size does not have three.
+        If a value is not finite and > 0, or the shape of size is not (3,).
 
     References
     ----------
@@ -74,7 +79,7 @@ def box(mass, size, transform=None):
     return _placed(mass, edges**2 / 12.0, transform)
 
 
-def sphere(mass, radius, transform=None):
+def sphere(mass: float, radius: float, transform: ArrayLike | None = None) -> NDArray[np.float64]:
     """
     Return the pseudo-inertia matrix of a homogeneous sphere.
 
@@ -85,7 +90,7 @@ def sphere(mass, radius, transform=None):
     radius : float
         m, > 0.
     transform : array_like, shape (4, 4), optional
-        Frame of the sphere (origin in its center) → frame of the answer.
+        Frame of the sphere (origin in its center) → frame of the result, m.
 
     Returns
     -------
@@ -106,12 +111,14 @@ def sphere(mass, radius, transform=None):
     return _placed(mass, np.full(3, radius**2 / 5.0), transform)
 
 
-def _placed(mass, second_moments_per_mass, transform):
+def _placed(
+    mass: float, second_moments_per_mass: Iterable[float], transform: ArrayLike | None
+) -> NDArray[np.float64]:
     matrix = mass * np.diag([*second_moments_per_mass, 1.0])
     return matrix if transform is None else transform_pseudo_inertia(matrix, transform)
 
 
-def _positive(**values):
+def _positive(**values: float) -> None:
     for name, value in values.items():
         if not (np.isfinite(value) and value > 0.0):
             raise ArgumentError(f'{name}: expected a finite number > 0, got {value}')

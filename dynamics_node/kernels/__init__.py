@@ -1,8 +1,10 @@
 """
-The kernels: raw numbers in, raw numbers out. Compiled, unchecked, one line per formula.
+The kernels: arithmetic on raw arrays, compiled and unchecked, one line per formula.
 
-What may change here: how fast the same numbers come. `textbook` is the specification, slow and
-literal; `recursive` is what runs for every robot, and what `codegen` turns into machine code for
-one. Shapes are checked in the room above (`dynamics`).
+`textbook` is the specification, slow and literal. `recursive` computes the same for every robot,
+and `codegen` turns it into machine code for one. `packing` makes its arrays, `jit` compiles it,
+`warm_up` does so in advance. `dynamics` checks shapes before it calls a kernel.
+
+What may change here: the speed, never the numbers.
 
 """

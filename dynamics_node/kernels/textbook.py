@@ -1,18 +1,23 @@
 """
-The textbook formulas, literally: the specification of what `recursive` computes.
+The textbook formulas, literally: the specification of `recursive`.
 
-Slow on purpose. Every sum of docs/mathematics.md, section 3, is written as it stands there,
-with the derivatives of the 4x4 transforms by the product rule. Nothing is shared with the
-closed form but the tree itself.
+Deliberately slow. Every sum of docs/mathematics.md, section 3, is written in the form of that
+document, with the derivatives of the 4x4 transforms by the product rule. It shares only the tree
+with `recursive`.
 
 """
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
-from ..model.tree import PRISMATIC
+from ..model.tree import KinematicTree, PRISMATIC
+
+Array = NDArray[np.float64]
 
 
-def link_transforms(tree, q):
+def link_transforms(tree: KinematicTree, q: Array) -> tuple[Array, Array, Array]:
     """
     Return A_k of every body and its first and second derivatives by the body positions.
 
@@ -49,7 +54,7 @@ def link_transforms(tree, q):
     return A, dA, ddA
 
 
-def mass_matrix(tree, q):
+def mass_matrix(tree: KinematicTree, q: Array) -> Array:
     """
     Return D by the trace formula.
 
@@ -74,7 +79,7 @@ def mass_matrix(tree, q):
     return B.T @ _trace_sum(dA, tree.inertia) @ B
 
 
-def christoffel_symbols(tree, q):
+def christoffel_symbols(tree: KinematicTree, q: Array) -> Array:
     """
     Return the Christoffel symbols of the bodies' positions from the derivatives of D.
 
@@ -101,7 +106,7 @@ def christoffel_symbols(tree, q):
     return 0.5 * (dD.transpose(0, 2, 1) + dD - dD.transpose(2, 1, 0))
 
 
-def christoffel_symbols_by_traces(tree, q):
+def christoffel_symbols_by_traces(tree: KinematicTree, q: Array) -> Array:
     """
     Return the Christoffel symbols by the second form of the formula.
 
@@ -125,7 +130,7 @@ def christoffel_symbols_by_traces(tree, q):
     return np.einsum('bjkxy,byz,bixz->ikj', ddA, tree.inertia, dA)
 
 
-def coriolis_matrix(tree, q, qd):
+def coriolis_matrix(tree: KinematicTree, q: Array, qd: Array) -> Array:
     """
     Return C from the Christoffel symbols.
 
@@ -149,7 +154,7 @@ def coriolis_matrix(tree, q, qd):
     return B.T @ np.einsum('ikj,k->ij', christoffel_symbols(tree, q), B @ qd) @ B
 
 
-def gravity_torque(tree, q, gravity):
+def gravity_torque(tree: KinematicTree, q: Array, gravity: Array) -> Array:
     """
     Return G with the center of mass as a point, (r, 1).
 
@@ -177,7 +182,7 @@ def gravity_torque(tree, q, gravity):
                                             tree.inertia[:, :, 3])
 
 
-def potential_energy(tree, q, gravity):
+def potential_energy(tree: KinematicTree, q: Array, gravity: Array) -> float:
     """
     Return V of the bodies that joints move, J.
 
@@ -203,21 +208,24 @@ def potential_energy(tree, q, gravity):
     return float(-np.einsum('x,bxy,by->', np.append(gravity, 0.0), A, tree.inertia[:, :, 3]))
 
 
-def _trace_sum(dA, inertia):
+def _trace_sum(dA: Array, inertia: Array) -> Array:
+    # (6): the sum over the bodies k of tr(∂A_k/∂q_i J_k (∂A_k/∂q_j)ᵀ), shape (N, N).
     return np.einsum('bixy,byz,bjxz->ij', dA, inertia, dA)
 
 
-def _chain(tree, k):
+def _chain(tree: KinematicTree, k: int) -> list[int]:
+    # Rows of the bodies from the base to body k.
     chain = []
     while k >= 0:
         chain.append(k)
-        k = tree.parent[k]
+        k = int(tree.parent[k])
     return chain[::-1]
 
 
-def _product(tree, chain, positions, orders):
-    # The product of placement and motion along the chain, the motion of joint i
-    # differentiated orders[i] times.
+def _product(tree: KinematicTree, chain: Sequence[int], positions: Array,
+             orders: Mapping[int, int]) -> Array:
+    # The product of placement and motion along the chain, shape (4, 4), with the motion of joint
+    # i differentiated orders[i] times.
     result = np.eye(4)
     for i in chain:
         motion = _motion(tree, i, positions[i], orders.get(i, 0))
@@ -225,8 +233,8 @@ def _product(tree, chain, positions, orders):
     return result
 
 
-def _motion(tree, i, position, order):
-    # E(position) and its derivatives: a slide, or Rodrigues' rotation.
+def _motion(tree: KinematicTree, i: int, position: float, order: int) -> Array:
+    # E(position) or a derivative, shape (4, 4): a translation, or Rodrigues' rotation.
     hat = np.zeros((4, 4))
     if tree.joint_type[i] == PRISMATIC:
         hat[:3, 3] = tree.axis[i]

@@ -1,21 +1,20 @@
 """
-Compile every kernel once: `python -m dynamics_node.kernels.warm_up`.
+Compile every kernel in advance: `python -m dynamics_node.kernels.warm_up`.
 
-The kernels do not depend on the robot, so after this no robot ever waits for the compiler.
+The kernels do not depend on the robot, so after this no call waits for the compiler.
 
 """
 
 import numpy as np
 
 from . import recursive
-from .packing import WIDTH
 
 
-def warm_up():
+def warm_up() -> None:
     """Compile the kernels, or load them from the cache on disk."""
     structure = np.array([[-1, 0, 0]], dtype=np.int64)
-    numbers = np.zeros((2, WIDTH))
-    # As `pack` hands them over: numba compiles read-only arrays as a type of their own.
+    numbers = np.zeros((2, recursive.WIDTH))
+    # Read-only as those of `pack`: numba compiles for read-only arrays separately.
     structure.flags.writeable = numbers.flags.writeable = False
     q = np.zeros((1, 1))
     matrix, vector = np.empty((1, 1, 1)), np.empty((1, 1))

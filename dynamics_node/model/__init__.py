@@ -1,8 +1,8 @@
 """
-The model: a checked description becomes the tree of moving bodies that the kernels walk.
+The model: from a checked description to the tree of moving bodies that the kernels use.
 
-What may change here: how fixed links are lumped, how joints are ordered, how mimic joints are
-resolved. The model is frozen; changing it means making a new one.
+What may change here: the lumping of fixed links, the order of joints, the resolution of mimic
+joints. A model is frozen; a changed robot is a new model.
 
 """
 

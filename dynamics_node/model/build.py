@@ -1,18 +1,23 @@
-"""From a checked description to the tree of moving bodies."""
+"""From a checked description to the tree of moving bodies: lumping, order, mimic joints."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .tip_link import tip_link
 from .tree import KinematicTree, LinkFrame, PRISMATIC, REVOLUTE
 from ..errors import RobotDescriptionError
 from ..inertia import combine
-from ..urdf.inertial import link_pseudo_inertia
+from ..urdf import Joint, RobotDescription
 from ..urdf.validation import LARGEST
 
+# Leader, multiplier, offset (rad or m): q = multiplier * q_leader + offset.
+_Leader = tuple[str, float, float]
 
-def build_tree(description):
+
+def build_tree(description: RobotDescription) -> KinematicTree:
     """
     Lump fixed links into the bodies that move and number the joints.
 
@@ -23,12 +28,12 @@ def build_tree(description):
     Returns
     -------
     KinematicTree
-        Its warnings are the description's and one that lists moving bodies without mass.
+        Its warnings are those of the description and one that lists moving bodies without mass.
 
     Raises
     ------
     RobotDescriptionError
-        If mimic joints multiply each other to numbers that no robot has.
+        If the multipliers or offsets of a chain of mimic joints exceed 1e30.
 
     References
     ----------
@@ -72,13 +77,13 @@ def build_tree(description):
     return replace(tree, tip_link=tip_link(tree, description))
 
 
-def _walk(description):
-    # Depth first in the order of the URDF; a stack, because a chain may be as long as the
+def _walk(description: RobotDescription) -> tuple[list[Joint], dict[str, LinkFrame]]:
+    # Depth first in the order of the URDF; with a stack, because a chain may be longer than the
     # recursion limit. The placement of a link is relative to the body that carries it.
-    children: dict[str, list] = {}
+    children: dict[str, list[Joint]] = {}
     for joint in description.joints:
         children.setdefault(joint.parent, []).append(joint)
-    moving: list = []
+    moving: list[Joint] = []
     links = {description.root: LinkFrame(-1, np.eye(4))}
     stack = children.get(description.root, [])[::-1]
     while stack:
@@ -93,20 +98,26 @@ def _walk(description):
     return moving, links
 
 
-def _lumped(description, links, count):
+def _lumped(
+    description: RobotDescription, links: dict[str, LinkFrame], count: int
+) -> NDArray[np.float64]:
     # Row -1 is the base.
-    parts: list[list] = [[] for _ in range(count + 1)]
+    parts: list[list[tuple[NDArray[np.float64], NDArray[np.float64]]]] = [
+        [] for _ in range(count + 1)
+    ]
     for link in description.links:
         if link.inertial is None:
             continue
         frame = links[link.name]
-        parts[frame.body].append((link_pseudo_inertia(link.inertial), frame.placement))
+        parts[frame.body].append((link.inertial.pseudo_inertia, frame.placement))
     return np.array([combine(bodies) for bodies in parts])
 
 
-def _friction(moving, resolved, index):
-    # (27): the leader of a mimic joint drags it along, faster by the multiplier, and feels its
-    # effort multiplied once more.
+def _friction(
+    moving: Sequence[Joint], resolved: Sequence[_Leader], index: dict[str, int]
+) -> NDArray[np.float64]:
+    # (27): a mimic joint moves faster than its leader by the multiplier, and its effort acts on
+    # the leader multiplied once more.
     friction = np.zeros((len(index), 2))
     for joint, (leader, multiplier, _) in zip(moving, resolved, strict=True):
         friction[index[leader]] += (
@@ -116,21 +127,21 @@ def _friction(moving, resolved, index):
     return friction
 
 
-def _refuse_overflow(tree):
-    # No number of the description is larger, but a chain of mimic joints multiplies what its
-    # joints say, and beyond that the dynamics would not be finite.
+def _refuse_overflow(tree: KinematicTree) -> None:
+    # Single numbers of a description are bounded, but a chain of mimic joints multiplies them;
+    # beyond the bound the dynamics are not finite.
     problems = [
-        f'joint {name}: {what} of all joints that it mimics in turn: expected at most '
+        f'joint {name}: {attribute} of all joints that it mimics in turn: expected at most '
         f'{LARGEST:g}, got {value:g}'
-        for what in ('multiplier', 'offset')
-        for name, value in zip(tree.moving_joint_names, getattr(tree, what), strict=True)
+        for attribute in ('multiplier', 'offset')
+        for name, value in zip(tree.moving_joint_names, getattr(tree, attribute), strict=True)
         if not abs(value) <= LARGEST
     ]
     if problems:
         raise RobotDescriptionError(problems)
 
 
-def _massless(moving, inertia):
+def _massless(moving: Sequence[Joint], inertia: NDArray[np.float64]) -> tuple[str, ...]:
     names = [
         joint.child
         for joint, matrix in zip(moving, inertia, strict=False)
@@ -144,18 +155,18 @@ def _massless(moving, inertia):
     )
 
 
-def _stack(rows, shape):
+def _stack(rows: Sequence[object], shape: tuple[int, ...]) -> NDArray[np.float64]:
     return np.array(rows, dtype=float).reshape(len(rows), *shape)
 
 
-def resolve_mimic(joints):
+def resolve_mimic(joints: Iterable[Joint]) -> dict[str, _Leader]:
     """
     Follow every chain of mimic joints to its leader.
 
     Parameters
     ----------
     joints : iterable of Joint
-        The movable joints; chains end and have no cycle (the description is checked).
+        The movable joints of a checked description: no chain of mimic joints is a cycle.
 
     Returns
     -------
@@ -172,7 +183,7 @@ def resolve_mimic(joints):
     return {name: _resolve(name, by_name) for name in by_name}
 
 
-def _resolve(name, by_name):
+def _resolve(name: str, by_name: dict[str, Joint]) -> _Leader:
     multiplier, offset = 1.0, 0.0
     while (mimic := by_name[name].mimic) is not None:
         # q = m (m' q'' + o') + o, one link of the chain at a time.

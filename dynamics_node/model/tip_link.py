@@ -1,18 +1,23 @@
-"""The link at the end of an arm, which requests mean that name none."""
+"""The link at the end of an arm: the default of requests without a link."""
 
 import re
 
 import numpy as np
 
-# Branches lighter than this share of what carries them are fingers; a finger that has no other
-# beside it is known by its name, too, and may be heavier.
-_LIGHT, _LIGHT_FINGER = 0.05, 0.1
-# A joint of this name moves a finger; a link of this name may be a whole gripper on a wrist.
+from .tree import KinematicTree
+from ..urdf import RobotDescription
+
+# Largest mass of a branch of fingers, relative to the bodies that carry it.
+_LIGHT = 0.05
+# The same for a single finger, which its name must confirm.
+_LIGHT_FINGER = 0.1
+# Names of joints that move fingers; links of these names may be a whole gripper on a wrist.
 _FINGER_JOINT = re.compile(r'finger|jaw|gripper|thumb|claw', re.IGNORECASE)
-# Unless it is a wrist.
+# Names of wrist joints, which are no finger joints.
 _WRIST = re.compile(r'yaw|pitch|roll|wrist', re.IGNORECASE)
+# Names of fingers, for joints and links.
 _DIGIT = re.compile(r'finger|jaw|thumb|claw', re.IGNORECASE)
-# Names of frames at which tools are meant to be, the best first.
+# Names of tool frames, the best first: tool center, tool, hand.
 _TOOLS = (
     re.compile(r'tcp|tool_?cent', re.IGNORECASE),
     re.compile(r'tool', re.IGNORECASE),
@@ -20,32 +25,32 @@ _TOOLS = (
 )
 
 
-def tip_link(tree, description):
+def tip_link(tree: KinematicTree, description: RobotDescription) -> str:
     """
     Return the link at the end of the arm: the last one before the fingers of a hand.
 
-    The walk along the moving bodies follows the heavier branch and ends where only light ones
-    are left, compared with the bodies from the base to there. Of the links of that body it takes
-    one in which a chain of fixed joints ends and that is called a tool center, a tool or a hand;
-    if there is none, one that is called so; and if there is none, the last.
+    The walk along the moving bodies follows the heavier branch and ends before branches that are
+    light compared with the bodies from the base to there. Among the links of the last body, the
+    choice is, in this order: a link at the end of a chain of fixed joints with the name of a tool
+    center, a tool or a hand; any link with such a name; the last link.
 
     Parameters
     ----------
     tree : KinematicTree
     description : RobotDescription
-        Of the same robot.
+        Description of the same robot.
 
     Returns
     -------
     str
-        The root link if nothing moves.
+        The root link if the robot has no movable joint.
 
     """
     body = _last_body(tree, {joint.name: joint.child for joint in description.joints})
     if body < 0:
         return tree.root
     links = [link for link, frame in tree.links.items() if frame.body == body]
-    # Fingers may be fixed, too.
+    # Fingers may be fixed to the hand.
     links = [link for link in links if not _DIGIT.search(link)] or links
     inner = {
         joint.parent
@@ -60,20 +65,21 @@ def tip_link(tree, description):
     return links[-1]
 
 
-def _last_body(tree, child):
+def _last_body(tree: KinematicTree, child: dict[str, str]) -> int:
+    # kg: each body with all bodies that it carries.
     behind = np.array(tree.inertia[:, 3, 3])
     for body in range(len(tree.parent) - 1, -1, -1):
         if tree.parent[body] >= 0:
             behind[tree.parent[body]] += behind[body]
-    body, before = -1, 0.0
+    body, before = -1, 0.0  # before: mass from the base to here, kg
     while True:
         children = np.flatnonzero(tree.parent == body)
         if len(children) == 0:
             return body
         heaviest = int(children[np.argmax(behind[children])])
         is_branch = len(children) > 1 and behind[heaviest] < _LIGHT * before
-        # Its own names count: what is fixed to a wrist may be called finger, too. A robot that
-        # weighs nothing has fingers as well.
+        # Only the names of the joint and its child link count: a wrist may carry a fixed finger.
+        # <= : a robot without masses has fingers, too.
         name = tree.moving_joint_names[heaviest]
         is_finger = behind[heaviest] <= _LIGHT_FINGER * before and _is_finger(name, child[name])
         if body >= 0 and (is_branch or is_finger):
@@ -81,7 +87,7 @@ def _last_body(tree, child):
         body, before = heaviest, before + float(tree.inertia[heaviest, 3, 3])
 
 
-def _is_finger(joint, link):
+def _is_finger(joint: str, link: str) -> bool:
     if _DIGIT.search(joint) or _DIGIT.search(link):
         return True
     return bool(_FINGER_JOINT.search(joint)) and not _WRIST.search(joint)

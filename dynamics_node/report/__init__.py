@@ -1,8 +1,8 @@
 """
-The model report: what a URDF says about a robot's dynamics, and what is wrong with it.
+The model report: the dynamics of a robot as its URDF describes them, and errors in the URDF.
 
-What may change here: what is looked for, what is said about it, and how it is shown. Nothing in
-here feeds back into the dynamics. Needs no ROS.
+What may change here: the checks, their texts, and how the report is shown. Nothing in here feeds
+back into the dynamics. Needs no ROS.
 
     from dynamics_node.report import make_report, to_json
     report = make_report('arm.urdf')
@@ -10,7 +10,7 @@ here feeds back into the dynamics. Needs no ROS.
 
 """
 
-from .make import make_report
+from .build import make_report
 from .report import Finding, Report
 from .to_json import to_json
 

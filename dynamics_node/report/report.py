@@ -1,4 +1,4 @@
-"""The whole report as plain data: what is shown in a terminal, as JSON and as a page."""
+"""The report as plain data, for the terminal, JSON and the page."""
 
 from __future__ import annotations
 
@@ -6,31 +6,33 @@ from dataclasses import dataclass, field
 
 from ..dynamics import RobotModel
 
-# From worst to harmless. Problems and warnings fail `--strict`, notes do not.
+Vector = tuple[float, ...]
+
+# In descending order. Problems and warnings fail `--strict`, notes do not.
 SEVERITIES = ('problem', 'warning', 'note')
 
 
 @dataclass(frozen=True)
 class LinkEntry:
     """
-    One link of the URDF, as it stands there.
+    One link as written in the URDF.
 
     Attributes
     ----------
     name : str
     has_inertial, has_shape : bool
-        Whether the URDF gives it an <inertial>, and a <visual> or a <collision>.
+        Whether it has an <inertial>, and a <visual> or a <collision>.
     mass : float
-        kg; 0 without <inertial>, NaN where its numbers cannot be read.
+        kg; 0 without <inertial>, NaN if its numbers cannot be read.
     com : tuple of 3 floats or None
         Center of mass in the link's frame, m; None without mass.
     principal_moments : tuple of 3 floats or None
         About the center of mass, kg m², ascending; None without <inertial>.
     violations : tuple of str
-        Why no real body has this mass and inertia.
+        Reasons why mass and inertia are physically impossible.
     carrier : str or None
-        The joint whose body it belongs to, a movable one; None: it stands on the base, or the
-        tree could not be read.
+        The movable joint whose body it belongs to; None if it stands on the base, or if the tree
+        cannot be read.
 
     """
 
@@ -38,30 +40,30 @@ class LinkEntry:
     has_inertial: bool
     has_shape: bool
     mass: float
-    com: tuple | None
-    principal_moments: tuple | None
-    violations: tuple
+    com: Vector | None
+    principal_moments: Vector | None
+    violations: tuple[str, ...]
     carrier: str | None
 
     @property
-    def is_physical(self):
-        """Whether a real body has this mass and inertia."""
+    def is_physical(self) -> bool:
+        """Whether mass and inertia are physically possible."""
         return not self.violations
 
 
 @dataclass(frozen=True)
 class BodyEntry:
     """
-    What one joint moves as one piece: its child link and all that fixed joints attach to it.
+    The rigid body that one joint moves: its child link and the links fixed to it.
 
     Attributes
     ----------
     joint, link : str
         The movable joint, and its child link, whose frame is the body's.
     parent : str or None
-        The joint of the body that carries it; None: the base.
+        The joint of the body that carries it; None for the base.
     lumped : tuple of str
-        Links that fixed joints attach, with and without mass.
+        Links attached by fixed joints, with and without mass.
     mass : float
         kg.
     com : tuple of 3 floats or None
@@ -75,10 +77,10 @@ class BodyEntry:
     joint: str
     link: str
     parent: str | None
-    lumped: tuple
+    lumped: tuple[str, ...]
     mass: float
-    com: tuple | None
-    principal_moments: tuple
+    com: Vector | None
+    principal_moments: Vector
     is_physical: bool
 
 
@@ -92,40 +94,43 @@ class GravityLoad:
     worst : float
         The largest in magnitude, with its sign.
     position : tuple of n floats
-        Where it is, in the order of `Report.joint_names`, rad or m.
+        Its position, in the order of `Report.joint_names`, rad or m.
     share : float
         Its magnitude over the effort limit; NaN without limit.
     payload_left : float
-        Point mass, kg, that may be added at `Report.payload`'s point there until this joint is
-        at its limit; 0 if it is over it, infinite where the mass does not turn it, NaN without
-        limit.
+        Point mass at the point of `Report.payload` that brings this joint to its limit there,
+        kg; 0 above the limit, infinite if the mass does not load the joint, NaN without limit.
     sampled : float
-        The largest magnitude among the samples alone, before it was climbed to the top.
+        The largest magnitude among the samples alone, before the search.
     levels, quantiles : tuple of floats
-        Of the magnitude over the samples; levels from 0 to 1.
+        Quantiles of the magnitude over the samples; levels from 0 to 1.
     edges, counts : tuple of numbers
         Histogram of the magnitude over the samples; one more edge than counts.
     curve_positions, curve_torques : tuple of floats
-        G of this joint over its own position, all other joints as at `position`.
+        Gravity torque over the joint's own position, all other joints as in `position`.
 
     """
 
     worst: float
-    position: tuple
+    position: Vector
     share: float
     payload_left: float
     sampled: float
-    levels: tuple
-    quantiles: tuple
-    edges: tuple
-    counts: tuple
-    curve_positions: tuple
-    curve_torques: tuple
+    levels: Vector
+    quantiles: Vector
+    edges: Vector
+    counts: tuple[int, ...]
+    curve_positions: Vector
+    curve_torques: Vector
 
     @property
-    def magnitude(self):
+    def magnitude(self) -> float:
         """The largest gravity torque without its sign, N m or N."""
         return abs(self.worst)
+
+    def quantile(self, level: float) -> float:
+        """Return the quantile of the magnitude at one of the `levels`, N m or N."""
+        return self.quantiles[self.levels.index(level)]
 
 
 @dataclass(frozen=True)
@@ -136,11 +141,11 @@ class JointEntry:
     Attributes
     ----------
     name, parent, child : str
-        Of the joint, and the links that it connects.
+        Names of the joint and of the links that it connects.
     kind : str
         'revolute', 'continuous' or 'prismatic'.
     mimics : str or None
-        The joint that it follows in the end, with `multiplier` and `offset`.
+        The independent joint that it follows, with `multiplier` and `offset`.
     multiplier, offset : float
         1 and 0 unless it mimics.
     lower, upper : float
@@ -150,7 +155,7 @@ class JointEntry:
     damping, friction : float
         N m s/rad or N s/m, N m or N.
     range_note : str
-        How positions were drawn where the limits do not say it; '' where they do.
+        The sampled range if limits are missing; '' otherwise.
     gravity : GravityLoad or None
         None for joints that mimic another, and for a refused robot.
 
@@ -173,12 +178,12 @@ class JointEntry:
     gravity: GravityLoad | None = None
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         """Unit of positions."""
         return 'm' if self.kind == 'prismatic' else 'rad'
 
     @property
-    def effort_unit(self):
+    def effort_unit(self) -> str:
         """Unit of efforts."""
         return 'N' if self.kind == 'prismatic' else 'N m'
 
@@ -186,7 +191,7 @@ class JointEntry:
 @dataclass(frozen=True)
 class PayloadEntry:
     """
-    What the effort limits leave for a point mass.
+    The point mass that the effort limits allow at rest.
 
     Attributes
     ----------
@@ -196,33 +201,33 @@ class PayloadEntry:
     is_moved : bool
         Whether any joint moves the link; if not, a payload has no effect.
     everywhere : float
-        kg that can be held at every position; 0 if some joint is over its limit already,
-        infinite if none has a limit in the way.
+        Mass that is held at every position, kg; 0 if a joint is above its limit without it,
+        infinite if no effort limit restricts it.
     limiting_joint : str or None
     limiting_position : tuple of n floats or None
-        Where that joint is at its limit with `everywhere`.
+        Position at which that joint reaches its limit with `everywhere`, rad or m.
     best : float
-        kg that can be held at the best of the sampled positions.
+        Mass that is held at the best of the sampled positions, kg.
     best_position : tuple of n floats
     best_joint : str or None
         The limiting joint there.
     unlimited_joints : tuple of str
-        Joints that carry the point and have no effort limit: they were not counted.
+        Joints that carry the point without an effort limit; they are ignored.
     is_guessed : bool
-        Whether the link that carries it was guessed, see `RobotModel.tip_link`.
+        Whether the link is the default, see `RobotModel.tip_link`.
 
     """
 
     link: str
-    point: tuple
+    point: Vector
     is_moved: bool
     everywhere: float
     limiting_joint: str | None
-    limiting_position: tuple | None
+    limiting_position: Vector | None
     best: float
-    best_position: tuple
+    best_position: Vector
     best_joint: str | None
-    unlimited_joints: tuple
+    unlimited_joints: tuple[str, ...]
     is_guessed: bool = False
 
 
@@ -236,21 +241,21 @@ class ConditioningEntry:
     median, worst : float
         Over the samples; infinite where D is not positive definite.
     position : tuple of n floats
-        Of the worst.
+        Position of the worst, rad or m.
     weakest_joint : str
-        The joint with the largest part in the eigenvector of the smallest eigenvalue there.
+        The joint with the largest entry in the eigenvector of the smallest eigenvalue there.
     is_positive_definite : bool
-        Beyond rounding, at every sample.
+        At every sample, beyond rounding errors.
     has_mixed_units : bool
-        Whether some joints slide and some turn: then the number depends on the units, m and rad.
+        Whether there are prismatic and rotating joints: the number then depends on the units.
     samples : int
-        How many positions it was computed at.
+        Number of positions at which it was computed.
 
     """
 
     median: float
     worst: float
-    position: tuple
+    position: Vector
     weakest_joint: str
     is_positive_definite: bool
     has_mixed_units: bool
@@ -260,7 +265,7 @@ class ConditioningEntry:
 @dataclass(frozen=True)
 class Finding:
     """
-    Something that its reader should know, or mend.
+    One problem, warning or note about the robot.
 
     Attributes
     ----------
@@ -269,19 +274,19 @@ class Finding:
     kind : str
         Stable identifier, see `kinds.KINDS`.
     subjects : tuple of str
-        Names of links or joints; empty for the robot.
+        Names of links or joints; empty for the whole robot.
     what : str
         A sentence with the numbers.
     effect : str
-        What it does to which torque, computed for this robot; '' if nothing.
+        The effect on torques or inertia, computed for this robot; '' if there is none.
     advice : str
-        What to change or type.
+        What to change.
 
     """
 
     severity: str
     kind: str
-    subjects: tuple
+    subjects: tuple[str, ...]
     what: str
     effect: str
     advice: str
@@ -290,12 +295,12 @@ class Finding:
 @dataclass(frozen=True)
 class Report:
     """
-    Everything about one robot.
+    The report of one robot.
 
     Attributes
     ----------
     robot, source : str
-        Its name, and the path it was read from ('URDF text' for a text).
+        Its name, and the path of the URDF ('URDF text' for a text).
     root : str
         Root link; '' if there is no tree.
     gravity : tuple of 3 floats
@@ -303,50 +308,50 @@ class Report:
     verdict : str
         'usable' or 'refused'.
     refusals : tuple of str
-        Why it is refused.
+        Reasons why `RobotModel` refuses it.
     total_mass, moving_mass : float
-        kg; of all links whose mass could be read, and of those that joints move.
+        Of all links with a readable mass, and of those that joints move, kg.
     samples, seed : int
     joint_names : tuple of str
-        The n independent joints in the order of every position in here.
+        The n independent joints, in the order of all positions of the report.
     links, bodies, joints, findings : tuple
-        `LinkEntry`, `BodyEntry`, `JointEntry`; `Finding`, the worst first.
+        `LinkEntry`, `BodyEntry`, `JointEntry`, and `Finding` in descending severity.
     payload : PayloadEntry or None
     conditioning : ConditioningEntry or None
         Both None for a refused robot and one without movable joints.
     model : RobotModel or None
-        For those who want to compute more; not part of the JSON.
+        For further computations; not part of the JSON.
 
     """
 
     robot: str
     source: str
     root: str
-    gravity: tuple
+    gravity: Vector
     verdict: str
-    refusals: tuple
+    refusals: tuple[str, ...]
     total_mass: float
     moving_mass: float
     samples: int
     seed: int
-    joint_names: tuple
-    links: tuple
-    bodies: tuple
-    joints: tuple
-    findings: tuple
+    joint_names: tuple[str, ...]
+    links: tuple[LinkEntry, ...]
+    bodies: tuple[BodyEntry, ...]
+    joints: tuple[JointEntry, ...]
+    findings: tuple[Finding, ...]
     payload: PayloadEntry | None = None
     conditioning: ConditioningEntry | None = None
     model: RobotModel | None = field(default=None, repr=False, compare=False)
 
     @property
-    def counts(self):
-        """How many findings there are of each severity, dict of str to int."""
+    def counts(self) -> dict[str, int]:
+        """Number of findings of each severity."""
         return {
             severity: sum(finding.severity == severity for finding in self.findings)
             for severity in SEVERITIES
         }
 
     @property
-    def is_clean(self):
-        """Whether there is neither a problem nor a warning: what `--strict` asks for."""
+    def is_clean(self) -> bool:
+        """Whether there are neither problems nor warnings, as `--strict` requires."""
         return not (self.counts['problem'] or self.counts['warning'])

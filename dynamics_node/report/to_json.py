@@ -1,15 +1,20 @@
-"""The report as dictionaries, lists, numbers and texts that JSON has."""
+"""The report as dictionaries, lists, numbers and strings for JSON."""
+
+from __future__ import annotations
 
 import dataclasses
 import math
+from typing import Any
 
-# Raised when a field changes its meaning or goes; new fields may come without.
+from .report import Report
+
+# Increased when a field changes its meaning or disappears; new fields do not increase it.
 FORMAT = 1
 
 
-def to_json(report):
+def to_json(report: Report) -> dict[str, Any]:
     """
-    Return a report as what `json.dumps` takes, strictly.
+    Return a report as strict input for `json.dumps`.
 
     Parameters
     ----------
@@ -18,14 +23,14 @@ def to_json(report):
     Returns
     -------
     dict
-        With "format"; the fields have the names of the dataclasses, and so have their
-        properties. What is infinite, not a number or not there is None.
+        With "format"; the keys are the fields and properties of the dataclasses. Missing,
+        infinite and NaN values are None.
 
     """
     return {'format': FORMAT, **_plain(report)}
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     if dataclasses.is_dataclass(value):
         names = [field.name for field in dataclasses.fields(value) if field.compare]
         names += [

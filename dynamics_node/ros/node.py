@@ -12,9 +12,8 @@ from rclpy.node import Node
 
 from .context import NodeContext
 from .parameters.live_change_check import check_change
-from .parameters.model_settings import PER_JOINT
 from .parameters.parameters import Parameters
-from .parameters.table import ParameterError
+from .parameters.table import check_lengths, ParameterError
 from .publishers.diagnostics import Diagnostics
 from .publishers.external_torque import ExternalTorque
 from .publishers.result_publishers import ResultPublishers
@@ -124,7 +123,7 @@ class DynamicsNode(Node):
             return False
         try:
             robot = read_robot(source, self.parameters.values)
-            self._check_lengths(self.parameters.values, robot)
+            check_lengths(self.parameters.values, robot.joint_names)
             robot.configure(self.parameters.values)
         except (DynamicsError, ParameterError) as error:
             if origin.startswith('parameter'):
@@ -178,7 +177,7 @@ class DynamicsNode(Node):
         robot, before = self._shared.robot, self.parameters.values
         if robot is None:
             return
-        self._check_lengths(values, robot)
+        check_lengths(values, robot.joint_names)
         model = robot.configured(values, before)
         if self.path.is_on:
             check_change(robot, model, values, before, self._gravity_change, time.monotonic())
@@ -216,6 +215,7 @@ class DynamicsNode(Node):
 
         """
         robot, effort = self._shared.robot, self.path.gravity_torque
+        assert robot is not None  # without a robot there is no state
         if not all(map(math.isfinite, effort.tolist())):
             if self._not_finite.is_due():
                 self.logger.warning(

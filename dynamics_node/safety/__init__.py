@@ -1,28 +1,28 @@
 """
-The path to the arm: measured states in, commands out, and everything that may say no.
+The path to the arm: measured states in, commands out, and every check in between.
 
-Plain classes with the time passed in: no ROS, no thread, no clock of their own. `TorquePath` is
-the one that the node uses.
+Plain classes that receive the time as an argument: no ROS, no thread, no clock. The node uses
+`TorquePath`, the effort guard `effort_guard.EffortGuard`.
 
-What may change here: when output is allowed and how it starts, is limited and stops. No effort
-may be published that did not pass `EffortLimiter`.
+What may change here: the conditions for output, and its start, limits and stop. Every published
+effort passes `EffortLimiter`.
 
 """
 
-from .effort_limiter import EffortLimiter, InvalidEffortError
+from .driver_checks import EffortPlausibility, self_compensating
+from .effort_limiter import EffortLimiter
 from .effort_output import EffortOutput, OutputSettings
-from .effort_plausibility import EffortAtRest
 from .gravity_change import GravityChange
-from .joint_state_buffer import JointStateBuffer, RejectedStateError, StampTolerance
+from .joint_state_buffer import JointStateBuffer, StampTolerance
 from .motion_limits import MotionLimits
-from .self_compensation import self_compensating
 from .state_machine import OutputState, OutputStateMachine
 from .torque_path import TorquePath
+from ..errors import InvalidEffortError, RejectedStateError
 
 __all__ = [
-    'EffortAtRest',
     'EffortLimiter',
     'EffortOutput',
+    'EffortPlausibility',
     'GravityChange',
     'InvalidEffortError',
     'JointStateBuffer',

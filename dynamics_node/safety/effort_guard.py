@@ -1,6 +1,7 @@
-"""The effort guard: passes commands on, and fades them to zero when no more commands come."""
+"""The effort guard: passes commands on, and fades the last one to zero after a silence."""
 
 from collections import Counter, deque
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 import logging
 import math
@@ -10,27 +11,28 @@ from .state_machine import OutputState
 
 _log = logging.getLogger(__name__)
 
-# How often a fade sends its next command, s.
+# Period of the commands of a fade, s.
 FADE_PERIOD = 0.01
-# No step of the guard's own is larger than what this time allows, however late it comes, s.
+# Largest time of one step of a fade or an approach, s, after any delay.
 LONGEST_STEP = 0.02
-# A command that waits in the queue is taken before the second look at a silence, s later.
+# Time between the first and the second tick of a silence, s: a command that waits in the queue
+# arrives in between.
 CONFIRM_AFTER = 0.002
-# The longest time between two looks, s.
-LOOK_EVERY = 0.05
-# A guard that looks at nothing for so long stood still itself, s: twice LOOK_EVERY.
+# Longest time between two ticks, s.
+MAX_TICK = 0.05
+# Time without command or tick that is a standstill of the guard itself, s: twice MAX_TICK.
 OWN_STALL = 0.1
-# Low rate limits do not make a fade longer than this, s.
+# Longest fade, s, for any rate limits.
 LONGEST_FADE = 10.0
-# The part of the largest effort within which a command is near the output.
+# Largest distance of a command near the output or near zero, relative to the largest effort.
 NEAR = 0.1
-# Timeouts without a command that make a rest: the next command begins anew.
+# Silence after which the next command is a new beginning, in timeouts.
 REST = 2.0
-# Commands that must fit into the timeout, or a late one begins a fade.
+# Smallest number of commands within the timeout; with fewer, one late command begins a fade.
 PERIODS = 3
 # Number of intervals whose median is the period of the commands.
 INTERVALS = 16
-# An array with more efforts than any arm has joints is not looked through.
+# Largest number of efforts in a command; a longer array is refused unread.
 MAX_JOINTS = 1000
 HOW_TO_GO_ON = '. Commands pass again when they begin near zero after a rest, or after ~/reset'
 
@@ -38,7 +40,7 @@ HOW_TO_GO_ON = '. Commands pass again when they begin near zero after a rest, or
 @dataclass(frozen=True)
 class GuardSettings:
     """
-    How the guard fades.
+    Timing and limits of the guard.
 
     Attributes
     ----------
@@ -47,49 +49,61 @@ class GuardSettings:
     stop_ramp : float
         Duration of a fade, s.
     rate_limits : tuple of float
-        Largest change of effort per joint in a fade, N m/s or N/s; a fade takes longer than
-        `stop_ramp` where they require it, `LONGEST_FADE` at most. Empty: none.
+        Largest change of effort per joint in a fade, N m/s or N/s; they make a fade longer than
+        `stop_ramp` if necessary, up to `LONGEST_FADE`. Empty: no limits.
     effort_limits : tuple of float
-        Largest effort per joint, N m or N. Empty: none.
+        Largest effort per joint, N m or N. Empty: no limits.
 
     """
 
     timeout: float = 0.05
     stop_ramp: float = 1.0
-    rate_limits: tuple = ()
-    effort_limits: tuple = ()
+    rate_limits: tuple[float, ...] = ()
+    effort_limits: tuple[float, ...] = ()
 
 
 class EffortGuard:
     """
-    Passes commands on unchanged; when they cease, fades the last one to zero.
+    Passes commands on unchanged; after a silence, fades the last one to zero.
 
-    Every method takes the time of one steady clock. What `on_command` and `look` return must be
-    published; None means that nothing may be.
+    Every method takes the time of one steady clock. The caller must publish the result of
+    `on_command` and `tick`; None means that nothing may be published.
 
     READY: no effort is in force. ACTIVE: commands pass unchanged. STOPPING: the last command
-    fades. FAULT: faded, or commands that do not begin near zero; nothing but zeros passes.
-    STARTING: the output approaches the commands, because the guard itself stood still, because
-    they came again early in a fade, or after `reset`.
+    fades. FAULT: after a fade, or with commands that do not begin near zero; only zeros pass.
+    STARTING: the output approaches the commands, after a standstill of the guard itself, after
+    an early return of the commands during a fade, or after `reset`.
 
     Attributes
     ----------
     state : OutputState
     reason : str
-        Why the state is what it is, for people.
+        Cause of the state, as text.
     output : list of float
-        The last command that was returned; empty before the first one.
+        The last returned command, N m or N; empty before the first one.
     joint_count : int or None
-        How many efforts the controller takes; None while unknown.
-    passed, clamped, bridged, fades, stalls : int
-        Commands that passed, commands with an effort above `effort_limits`, silences that ended
-        early in their fade, fades, and standstills of the guard itself.
+        Number of joints of the controller; None while unknown.
+    passed : int
+        Number of commands that passed.
+    clamped : int
+        Number of commands with an effort above `effort_limits`.
+    bridged : int
+        Number of silences that ended early in their fade.
+    fades : int
+        Number of fades.
+    stalls : int
+        Number of standstills of the guard itself.
     refused : Counter
-        Commands that did not pass, by kind.
+        Number of commands that did not pass, by kind.
 
     """
 
-    def __init__(self, settings, on_change=None, obstacle=None):
+    def __init__(
+        self,
+        settings: GuardSettings,
+        on_change: Callable[[OutputState, str], None] | None = None,
+        obstacle: Callable[[], str] | None = None,
+    ) -> None:
         """
         Start READY.
 
@@ -97,55 +111,55 @@ class EffortGuard:
         ----------
         settings : GuardSettings
         on_change : callable(OutputState, str), optional
-            Called after every change of state or reason. An exception in it is logged.
+            Called after every change of state or reason. Its exceptions are logged.
         obstacle : callable() -> str, optional
-            Called when an effort is about to begin: why it must not; '' if it may.
+            Called before the first effort passes; returns the reason to refuse it, or ''.
 
         """
         self.settings = settings
         self.state = OutputState.READY
         self.reason = 'no command yet'
         self.output: list[float] = []
-        self.joint_count = None
+        self.joint_count: int | None = None
         self.passed = self.clamped = self.bridged = self.fades = self.stalls = 0
         self.refused: Counter[str] = Counter()
         self._on_change = on_change
         self._obstacle = obstacle or (lambda: '')
-        self._largest: list[float] = []  # effort of each joint that has passed so far
+        self._largest: list[float] = []  # effort of each joint in the commands that passed
         self._intervals: deque[float] = deque(maxlen=INTERVALS)
-        self._source_at = math.inf  # no source has been there for any time
-        self._heard_at = -math.inf
-        self._heard_zero = False
+        self._source_at = math.inf  # no publisher found yet
+        self._received_at = -math.inf
+        self._received_zero = False
         self._dropped: Counter[str] = Counter()  # since the last valid command
-        self._looked_at = math.inf
+        self._ran_at = math.inf  # last command or tick
         self._stall = 0.0
         self._is_suspect = False
         self._is_ending = False
         self._must_approach = False
-        self._fault = self._told = ''  # why it is FAULT, and the kind of the refusal told
-        # Of a fade or an approach: where it began, how much of it is done.
+        self._fault = self._refused_kind = ''  # cause of FAULT, kind of the last reported refusal
+        # Of a fade or an approach: first output, progress from 0 to 1, duration, last step, s.
         self._start: list[float] = []
-        self._done, self._duration, self._stepped_at = 0.0, 1.0, 0.0
+        self._progress, self._duration, self._stepped_at = 0.0, 1.0, 0.0
 
     @property
-    def has_effort(self):
-        """Whether the last command that was returned is not zero."""
+    def has_effort(self) -> bool:
+        """Whether the last returned command is not zero."""
         return any(self.output)
 
     @property
-    def is_passing(self):
+    def is_passing(self) -> bool:
         """Whether commands pass: ACTIVE and STARTING."""
         return self.state in (OutputState.ACTIVE, OutputState.STARTING)
 
-    def slow_period(self):
+    def slow_period(self) -> float | None:
         """
-        Return the period of commands that come too slowly for the timeout.
+        Return the period of the commands if it is too long for the timeout.
 
         Returns
         -------
         float or None
-            The median of the latest periods, s; None while `PERIODS` of them fit into the
-            timeout, and while it is unknown.
+            The median of the latest intervals, s; None if `PERIODS` of them fit into the timeout,
+            or if it is unknown.
 
         """
         if len(self._intervals) < INTERVALS:
@@ -153,11 +167,11 @@ class EffortGuard:
         period = statistics.median(self._intervals)
         return period if PERIODS * period > self.settings.timeout else None
 
-    def source_appeared(self, now):
+    def source_appeared(self, now: float) -> None:
         """
-        Take note that a publisher of commands has been found.
+        Note that a publisher of commands has been found.
 
-        If commands come right after it, they were under way before, and do not begin near zero.
+        Commands right after that were sent before it was found: they do not begin near zero.
 
         Parameters
         ----------
@@ -168,9 +182,9 @@ class EffortGuard:
         if not self.is_passing:
             self._source_at = now
 
-    def on_command(self, now, efforts):
+    def on_command(self, now: float, efforts: Sequence[float]) -> Sequence[float] | None:
         """
-        Take a command.
+        Pass, change or refuse a command.
 
         Parameters
         ----------
@@ -182,7 +196,7 @@ class EffortGuard:
         Returns
         -------
         sequence of float or None
-            `efforts` itself where it passes unchanged.
+            N m or N; `efforts` itself if it passes unchanged.
 
         """
         self._notice_stall(now)
@@ -191,9 +205,9 @@ class EffortGuard:
             self._dropped[problem] += 1
             return None
         rest = REST * self.settings.timeout
-        is_beginning = self._heard_zero or now - max(self._heard_at, self._source_at) >= rest
-        self._measure(now)
-        self._heard_at, self._heard_zero = now, not any(efforts)
+        is_beginning = self._received_zero or now - max(self._received_at, self._source_at) >= rest
+        self._measure_interval(now)
+        self._received_at, self._received_zero = now, not any(efforts)
         self._is_suspect = False
         self._dropped.clear()
         if self._is_ending:
@@ -205,9 +219,9 @@ class EffortGuard:
             return self._come_back(now, command)
         return self._begin(now, command, is_beginning)
 
-    def look(self, now):
+    def tick(self, now: float) -> list[float] | None:
         """
-        Look whether commands still come, and walk a fade to its end.
+        Check for a silence of the commands; return the next command of a fade.
 
         Parameters
         ----------
@@ -217,14 +231,15 @@ class EffortGuard:
         Returns
         -------
         list of float or None
+            N m or N.
 
         """
         self._notice_stall(now)
-        silence = now - self._heard_at
+        silence = now - self._received_at
         if self.state == OutputState.STOPPING:
-            return self._fade_on(now)
+            return self._continue_fade(now)
         if self.is_passing and silence >= self.settings.timeout:
-            if self.state == OutputState.ACTIVE and self._heard_zero:
+            if self.state == OutputState.ACTIVE and self._received_zero:
                 self._enter(OutputState.READY, 'the commands have ended at zero')
             elif self._is_suspect:
                 self._begin_fade(now, self._describe(silence))
@@ -233,15 +248,15 @@ class EffortGuard:
                 self._is_suspect = True
         elif (
             self.state == OutputState.FAULT
-            and self._heard_zero
+            and self._received_zero
             and silence >= REST * self.settings.timeout
         ):
             self._enter(OutputState.READY, 'the commands have ended at zero: armed again')
         return None
 
-    def next_look(self, now):
+    def next_tick_in(self, now: float) -> float:
         """
-        Return in how many seconds `look` has to be called next.
+        Return the time until the next call of `tick`.
 
         Parameters
         ----------
@@ -257,15 +272,15 @@ class EffortGuard:
         if self.state == OutputState.STOPPING:
             return FADE_PERIOD
         if not self.is_passing:
-            return min(LOOK_EVERY, self.settings.timeout)
+            return min(MAX_TICK, self.settings.timeout)
         if self._is_suspect:
             return CONFIRM_AFTER
-        left = self.settings.timeout - (now - self._heard_at)
-        return min(LOOK_EVERY, max(left, CONFIRM_AFTER))
+        left = self.settings.timeout - (now - self._received_at)
+        return min(MAX_TICK, max(left, CONFIRM_AFTER))
 
-    def reset(self, now):
+    def reset(self, now: float) -> tuple[bool, str]:
         """
-        Leave FAULT: the next commands are taken whatever they are, and approached by a ramp.
+        Leave FAULT: the next commands may have any size and are approached by a ramp.
 
         Parameters
         ----------
@@ -275,6 +290,7 @@ class EffortGuard:
         Returns
         -------
         success : bool
+            False if the state is not FAULT, or the guard is ending.
         message : str
 
         """
@@ -288,31 +304,31 @@ class EffortGuard:
         self._enter(OutputState.READY, text)
         return True, text
 
-    def end(self, now, within, reason):
+    def end(self, now: float, within: float, reason: str) -> None:
         """
-        Take no more commands, and fade within a time, whatever `rate_limits` are.
+        Refuse all further commands, and fade within a time, for any `rate_limits`.
 
         Parameters
         ----------
         now : float
             s.
         within : float
-            s.
+            Longest duration of the fade, s.
         reason : str
-            For people.
+            Cause, as text.
 
         """
         self._is_ending = True
         if self.state == OutputState.STOPPING:
-            left = self._duration * (1.0 - self._done)
-            self._walk(now, min(left, within))
+            left = self._duration * (1.0 - self._progress)
+            self._begin_ramp(now, min(left, within))
             self._enter(OutputState.STOPPING, reason)
         elif self.is_passing:
             self._begin_fade(now, reason, within)
 
-    def drop(self):
+    def drop(self) -> list[float]:
         """
-        Give up a fade: the output is zero at once.
+        Abort a fade: the output is zero at once.
 
         Returns
         -------
@@ -324,7 +340,7 @@ class EffortGuard:
         self._enter(OutputState.FAULT, 'the fade did not end in time: zero at once')
         return self.output
 
-    def _problem(self, efforts):
+    def _problem(self, efforts: Sequence[float]) -> str:
         count = len(efforts)
         if count == 0:
             return 'empty'
@@ -333,21 +349,21 @@ class EffortGuard:
             return 'length'
         return '' if all(map(math.isfinite, efforts)) else 'not finite'
 
-    def _expected_count(self):
-        # Only at rest commands may have begun to drive other joints.
+    def _expected_count(self) -> int | None:
+        # The number of joints may change only while no effort is in force.
         if self.output and self.state != OutputState.READY:
             return len(self.output)
         limits = self.settings.effort_limits or self.settings.rate_limits
         return len(limits) if limits else self.joint_count
 
-    def _measure(self, now):
-        interval = now - self._heard_at
+    def _measure_interval(self, now: float) -> None:
+        interval = now - self._received_at
         if interval < 1.0:
             self._intervals.append(interval)
         else:
             self._intervals.clear()
 
-    def _clamp(self, efforts):
+    def _clamp(self, efforts: Sequence[float]) -> Sequence[float]:
         limits = self.settings.effort_limits
         if not limits or all(
             abs(effort) <= limit for effort, limit in zip(efforts, limits, strict=True)
@@ -360,7 +376,7 @@ class EffortGuard:
 
     # Passing ---------------------------------------------------------------------------------
 
-    def _pass(self, now, command):
+    def _pass(self, now: float, command: Sequence[float]) -> Sequence[float]:
         if self._stall and not self._is_one_step(command):
             self._approach(
                 now,
@@ -371,16 +387,16 @@ class EffortGuard:
         self._stall = 0.0
         if self.state == OutputState.STARTING:
             self._advance(now)
-            if self._done < 1.0:
+            if self._progress < 1.0:
                 command = [
-                    start + self._done * (effort - start)
+                    start + self._progress * (effort - start)
                     for start, effort in zip(self._start, command, strict=True)
                 ]
             else:
                 self._enter(OutputState.ACTIVE, 'commands pass')
         return self._returned(command)
 
-    def _returned(self, command):
+    def _returned(self, command: Sequence[float]) -> Sequence[float]:
         self.passed += 1
         self.output = list(command)
         if len(self._largest) == len(command):
@@ -389,7 +405,7 @@ class EffortGuard:
             self._largest = list(map(abs, command))
         return command
 
-    def _come_back(self, now, command):
+    def _come_back(self, now: float, command: Sequence[float]) -> Sequence[float] | None:
         if any(
             distance > NEAR * scale
             for distance, scale in zip(self._distance(command), self._scale(), strict=True)
@@ -400,7 +416,9 @@ class EffortGuard:
         self._approach(now, self._approach_time(command), 'commands came again early in the fade')
         return self._pass(now, command)
 
-    def _begin(self, now, command, is_beginning):
+    def _begin(
+        self, now: float, command: Sequence[float], is_beginning: bool
+    ) -> Sequence[float] | None:
         if not any(command):
             self._must_approach = False
             if self.state == OutputState.READY:
@@ -408,7 +426,8 @@ class EffortGuard:
             return self._returned(command)
         is_start = is_beginning and self._is_near_zero(command)
         if (is_start or self._must_approach) and (obstacle := self._obstacle()):
-            return self._refuse('obstacle', obstacle)
+            self._refuse('obstacle', obstacle)
+            return None
         if is_start:
             self._stall, self._must_approach = 0.0, False
             self._enter(OutputState.ACTIVE, 'commands pass')
@@ -423,59 +442,61 @@ class EffortGuard:
                 'after ~/reset the output approaches the commands',
             )
             return self._pass(now, command)
-        if not is_beginning:
-            return self._refuse('under way', 'commands were under way before they could pass')
-        return self._refuse(
-            'not near zero',
-            f'commands begin with up to {max(map(abs, command)):.4g}, too far from zero',
-        )
+        if is_beginning:
+            self._refuse(
+                'not near zero',
+                f'commands begin with up to {max(map(abs, command)):.4g}, too far from zero',
+            )
+        else:
+            self._refuse('under way', 'commands were under way before they could pass')
+        return None
 
-    def _refuse(self, kind, why):
+    def _refuse(self, kind: str, cause: str) -> None:
         self.refused[kind] += 1
         self._must_approach = False
         if self.state != OutputState.FAULT:
-            self._fault, self._told = why, kind
-            self._enter(OutputState.FAULT, why + HOW_TO_GO_ON)
-        elif kind != self._told and not (self._told and kind == 'under way'):
-            # Once: its number changes with every command, and those that follow the first one
-            # of a stream are under way.
-            self._told = kind
-            self._enter(OutputState.FAULT, f'{self._fault}; {why}{HOW_TO_GO_ON}')
+            self._fault, self._refused_kind = cause, kind
+            self._enter(OutputState.FAULT, cause + HOW_TO_GO_ON)
+        elif kind != self._refused_kind and not (self._refused_kind and kind == 'under way'):
+            # Reported once per kind: the number in the text changes with every command, and the
+            # commands behind the first refused one are always under way.
+            self._refused_kind = kind
+            self._enter(OutputState.FAULT, f'{self._fault}; {cause}{HOW_TO_GO_ON}')
 
     # Distances -------------------------------------------------------------------------------
 
-    def _scale(self):
-        # Per joint, but not less than a tenth of the largest of all: a joint that carried
-        # nothing so far may have to.
+    def _scale(self) -> list[float]:
+        # Largest effort per joint, but at least a tenth of the largest of all joints: a joint
+        # without load so far may need it.
         floor = NEAR * max(self._largest, default=0.0)
         return [max(largest, floor) for largest in self._largest]
 
-    def _is_near_zero(self, command):
-        # Without a limit nothing says what is large, and a stream after a rest is trusted.
-        scale = self.settings.effort_limits
+    def _is_near_zero(self, command: Sequence[float]) -> bool:
+        # Without effort limits there is no measure of size; a stream after a rest is trusted.
+        scale: Sequence[float] = self.settings.effort_limits
         if self.state == OutputState.FAULT or self._must_approach:
             scale = self._scale() or scale
         elif not scale:
             return True
         return len(scale) == len(command) and all(
-            abs(effort) <= NEAR * most for effort, most in zip(command, scale, strict=True)
+            abs(effort) <= NEAR * largest for effort, largest in zip(command, scale, strict=True)
         )
 
-    def _distance(self, command):
+    def _distance(self, command: Sequence[float]) -> list[float]:
         return [abs(effort - last) for effort, last in zip(command, self.output, strict=True)]
 
-    def _rates(self):
+    def _rates(self) -> Sequence[float]:
         return self.settings.rate_limits or [
-            most / self.settings.stop_ramp for most in self._scale()
+            largest / self.settings.stop_ramp for largest in self._scale()
         ]
 
-    def _is_one_step(self, command):
+    def _is_one_step(self, command: Sequence[float]) -> bool:
         return all(
             distance <= rate * LONGEST_STEP
             for distance, rate in zip(self._distance(command), self._rates(), strict=True)
         )
 
-    def _approach_time(self, command):
+    def _approach_time(self, command: Sequence[float]) -> float:
         if len(self._largest) != len(command):
             return self.settings.stop_ramp
         times = [
@@ -484,7 +505,7 @@ class EffortGuard:
         ]
         return min(max(times), LONGEST_FADE)
 
-    def _fade_time(self):
+    def _fade_time(self) -> float:
         longest = max(
             (
                 abs(effort) / rate
@@ -494,57 +515,57 @@ class EffortGuard:
         )
         return min(max(self.settings.stop_ramp, longest), LONGEST_FADE)
 
-    # Ways to zero and back -------------------------------------------------------------------
+    # Fade and approach -----------------------------------------------------------------------
 
-    def _approach(self, now, duration, reason):
-        self._walk(now, duration)
+    def _approach(self, now: float, duration: float, reason: str) -> None:
+        self._begin_ramp(now, duration)
         self._enter(OutputState.STARTING, reason)
 
-    def _begin_fade(self, now, reason, within=math.inf):
+    def _begin_fade(self, now: float, reason: str, within: float = math.inf) -> None:
         self.fades += 1
-        self._fault, self._told = reason, ''
+        self._fault, self._refused_kind = reason, ''
         self._is_suspect = False
         self._stall = 0.0
-        self._walk(now, min(self._fade_time(), within))
+        self._begin_ramp(now, min(self._fade_time(), within))
         self._enter(OutputState.STOPPING, reason)
 
-    def _fade_on(self, now):
+    def _continue_fade(self, now: float) -> list[float]:
         self._advance(now)
-        self.output = [(1.0 - self._done) * effort for effort in self._start]
-        if self._done == 1.0:
+        self.output = [(1.0 - self._progress) * effort for effort in self._start]
+        if self._progress == 1.0:
             self.output = [0.0] * len(self.output)
-            # After the command, so that the state is not ahead of it.
+            # The state changes after the output, so that it is not ahead of the command.
             if self._is_ending:
                 self._enter(OutputState.READY, f'faded to zero: {self.reason}')
             else:
                 self._enter(OutputState.FAULT, self._fault + HOW_TO_GO_ON)
         return self.output
 
-    def _walk(self, now, duration):
-        self._start, self._done = list(self.output), 0.0
+    def _begin_ramp(self, now: float, duration: float) -> None:
+        self._start, self._progress = list(self.output), 0.0
         self._duration, self._stepped_at = max(duration, FADE_PERIOD), now
 
-    def _advance(self, now):
+    def _advance(self, now: float) -> None:
         step = min(max(now - self._stepped_at, 0.0), LONGEST_STEP)
         self._stepped_at = now
-        self._done = min(self._done + step / self._duration, 1.0)
+        self._progress = min(self._progress + step / self._duration, 1.0)
 
     # Time ------------------------------------------------------------------------------------
 
-    def _notice_stall(self, now):
-        if now - self._looked_at > OWN_STALL:
+    def _notice_stall(self, now: float) -> None:
+        if now - self._ran_at > OWN_STALL:
             self.stalls += 1
-            self._stall = now - self._looked_at
-        self._looked_at = now
+            self._stall = now - self._ran_at
+        self._ran_at = now
 
-    def _describe(self, silence):
+    def _describe(self, silence: float) -> str:
         dropped = ', '.join(f'{count} {kind}' for kind, count in self._dropped.most_common())
         return (
             f'no{" valid" if dropped else ""} command for {silence:.3f} s, timeout '
             f'{self.settings.timeout:g} s' + (f' (dropped: {dropped})' if dropped else '')
         )
 
-    def _enter(self, state, reason):
+    def _enter(self, state: OutputState, reason: str) -> None:
         if (state, reason) == (self.state, self.reason):
             return
         self.state, self.reason = state, reason
@@ -553,5 +574,5 @@ class EffortGuard:
         try:
             self._on_change(state, reason)
         except Exception:
-            # The observer informs people; the arm must not depend on that.
+            # The observer only reports; the arm must not depend on it.
             _log.exception('the observer of the guard failed')

@@ -1,74 +1,79 @@
-"""The one place where an effort becomes a command: scaled, limited, checked last."""
+"""From an effort to a command: scaled, limited, and checked at the end."""
 
+from collections.abc import Sequence
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from ..errors import DynamicsError
+from ..errors import InvalidEffortError
 
-# Part of the effort limit that makes no difference to an arm.
+# Effort without a noticeable effect on an arm, relative to the effort limit.
 NEGLIGIBLE = 0.01
-
-
-class InvalidEffortError(DynamicsError):
-    """An effort is not finite or does not have one value per joint: it is never published."""
 
 
 class EffortLimiter:
     """
     Turns model efforts into commands that are safe to publish.
 
-    In this order: scale by the joint's gain and clamp to the effort limit (`target`); then, after
-    the caller has applied its ramp, limit the step since the last command, clamp once more, and
-    check last that every value is finite (`step`). The ramp comes before the rate limit, so that
-    the rate limit holds for what is really published.
+    `target` scales an effort by the joint's gain and clamps it to the effort limit. The caller
+    applies its ramps. `step` then limits the change since the last command, clamps once more,
+    and finally checks that every value is finite. The ramps come before the rate limit, so that
+    the rate limit holds for the published commands.
 
     Attributes
     ----------
     names : tuple of str
-        Of the m joints.
+        Names of the m joints.
     is_saturated : bool
-        Whether any joint was clamped by the last `target`.
+        Whether the last `target` clamped any joint.
     is_held_back : bool
-        Whether any joint could not reach its target within the last `step`.
+        Whether the last `step` ended before the target for any joint.
     saturations : list of int
-        Commands in which each of the m joints was clamped.
+        Number of commands in which each of the m joints was clamped.
     rate_limited : int
-        Commands with at least one joint that could not follow within its rate limit.
+        Number of commands with at least one joint at its rate limit.
 
     """
 
-    def __init__(self, limits, rate_limits, scale, names=()):
+    def __init__(
+        self,
+        limits: ArrayLike,
+        rate_limits: ArrayLike,
+        scale: ArrayLike,
+        names: Sequence[str] = (),
+    ) -> None:
         """
-        Make a limiter whose last command is zero.
+        Start with a last command of zero.
 
         Parameters
         ----------
-        limits : numpy.ndarray, shape (m,)
+        limits : array_like, shape (m,)
             Largest effort, N m or N, > 0.
-        rate_limits : numpy.ndarray, shape (m,)
+        rate_limits : array_like, shape (m,)
             Largest change of effort, N m/s or N/s, > 0.
-        scale : numpy.ndarray, shape (m,)
+        scale : array_like, shape (m,)
             Gain on the model's effort.
         names : sequence of str, optional
-            Of the m joints, for people.
+            Names of the m joints, for messages.
 
         """
-        # Lists, not arrays: for the few joints of a robot plain numbers are several times as
-        # fast as numpy, and every command waits for this.
-        self._limits = np.array(limits, dtype=float).tolist()
-        self._rate_limits = np.array(rate_limits, dtype=float).tolist()
-        self._scale = np.array(scale, dtype=float).tolist()
+        # Lists instead of arrays: for the few joints of a robot, plain numbers are several times
+        # faster than numpy, and every command waits for this.
+        self._limits: list[float] = np.array(limits, dtype=float).tolist()
+        self._rate_limits: list[float] = np.array(rate_limits, dtype=float).tolist()
+        self._scale: list[float] = np.array(scale, dtype=float).tolist()
         m = len(self._limits)
         self.names = tuple(names) or tuple(f'joint {i}' for i in range(m))
-        self._last = self._before = [0.0] * m
+        self._last: list[float] = [0.0] * m
+        self._before = self._last
         self._wanted = [0.0] * m
         self.is_saturated = self.is_held_back = False
         self.saturations = [0] * m
         self.rate_limited = 0
 
-    def saturation(self):
-        """Return in words which joints were clamped by the last call: wanted and limit."""
+    def saturation(self) -> str:
+        """Return the joints that the last `target` clamped, as text: wanted effort and limit."""
         return '; '.join(
             f'{name}: {wanted:.6g} limited to {limit:.6g}'
             for name, wanted, limit in zip(self.names, self._wanted, self._limits, strict=True)
@@ -76,33 +81,33 @@ class EffortLimiter:
         )
 
     @property
-    def last(self):
-        """The last command, shape (m,), a copy."""
+    def last(self) -> NDArray[np.float64]:
+        """The last command, N m or N; shape (m,), a copy."""
         return np.array(self._last)
 
-    def describe_last(self):
-        """Return the last command in words: a joint and its effort each."""
+    def describe_last(self) -> str:
+        """Return the last command as text: each joint and its effort."""
         return ', '.join(
             f'{name}: {effort:.6g}' for name, effort in zip(self.names, self._last, strict=True)
         )
 
-    def reset(self):
-        """Take zero for the last command."""
+    def reset(self) -> None:
+        """Set the last command to zero."""
         self._last = self._before = [0.0] * len(self._limits)
 
-    def resume(self, efforts):
-        """Take efforts that are in force, shape (m,), N m or N, for the last command."""
+    def resume(self, efforts: ArrayLike) -> None:
+        """Set the last command to the efforts in force, shape (m,), N m or N."""
         self._last = self._before = np.array(efforts, dtype=float).tolist()
 
-    def carry_on_from(self, other):
-        """Take over last command and counts from the limiter that this one replaces."""
+    def carry_on_from(self, other: 'EffortLimiter') -> None:
+        """Copy last command and counts from the limiter that this one replaces."""
         self._last = self._before = other.last.tolist()
         self.saturations = other.saturations
         self.rate_limited = other.rate_limited
 
-    def target(self, effort):
+    def target(self, effort: NDArray[np.float64]) -> list[float]:
         """
-        Return where a model effort wants the command to be: scaled and clamped.
+        Return a model effort scaled and clamped.
 
         Parameters
         ----------
@@ -138,7 +143,9 @@ class EffortLimiter:
             target.append(value)
         return target
 
-    def step(self, target, dt, least_steps=None):
+    def step(
+        self, target: Sequence[float], dt: float, least_steps: Sequence[float] | None = None
+    ) -> NDArray[np.float64]:
         """
         Return the next command on the way to a target.
 
@@ -147,20 +154,20 @@ class EffortLimiter:
         target : sequence of float
             m values, N m or N.
         dt : float
-            Time that the step may count, s.
+            Time of the step for the rate limits, s.
         least_steps : sequence of float, optional
-            Steps that are allowed whatever the rate limits say, N m or N: a stop has to end.
+            Steps that are allowed beyond the rate limits, N m or N: a stop has to end.
 
         Returns
         -------
         numpy.ndarray, shape (m,)
-            Finite, at most one step from the last command, and within the limits, or on the way
-            there if the last command was beyond them.
+            N m or N; finite, at most one step from the last command, and within the limits, or
+            on the way there if the last command was beyond them.
 
         Raises
         ------
         InvalidEffortError
-            If a value is not finite; the last command stays what it was.
+            If a value is not finite; the last command is then unchanged.
 
         """
         time = max(dt, 0.0)
@@ -175,8 +182,8 @@ class EffortLimiter:
                 is_held_back = True
                 value = _clip(value, last - step, last + step)
             if not abs(value) <= limit:
-                # Rounding of last + step must not carry a command over its limit; a limit that
-                # was lowered below the last command is approached at the rate limit.
+                # Rounding of last + step must not exceed the limit; a limit lowered below the
+                # last command is approached at the rate limit.
                 bound = max(limit, abs(last))
                 value = _clip(value, -bound, bound)
             command.append(value)
@@ -187,21 +194,21 @@ class EffortLimiter:
         self.rate_limited += is_held_back
         return np.array(command)
 
-    def is_negligible(self, efforts):
-        """Tell whether m efforts are within NEGLIGIBLE of the limits."""
+    def is_negligible(self, efforts: NDArray[np.float64]) -> bool:
+        """Tell whether m efforts, N m or N, are within NEGLIGIBLE of the limits."""
         return all(
             abs(effort) <= NEGLIGIBLE * limit
             for effort, limit in zip(efforts.tolist(), self._limits, strict=True)
         )
 
-    def withdraw(self):
-        """Take the last command back, because it was not published."""
+    def withdraw(self) -> None:
+        """Undo the last command, because it was not published."""
         self._last = self._before
 
 
-def _clip(value, low, high):
-    # Every comparison with NaN is False, so that a NaN in any of the three ends as NaN, which
-    # is refused, and never as one of the bounds.
+def _clip(value: float, low: float, high: float) -> float:
+    # Comparisons with NaN are False: a NaN in any argument gives NaN, which is refused, and
+    # never a bound.
     if low <= value <= high:
         return value
     if value < low <= high:

@@ -1,26 +1,30 @@
-"""Which command goes out next: ramps, steps between states, and every stop to its end."""
+"""The next command: ramps, steps between joint states, and every stop to its end."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .effort_limiter import EffortLimiter, InvalidEffortError
+from .effort_limiter import EffortLimiter
 from .state_machine import OutputState, OutputStateMachine
+from ..errors import InvalidEffortError
 
 # Period of the commands of a stop, and of a ramp between two joint states, s.
 STOP_PERIOD = 0.01
-# A step toward the model's effort counts at most this many nominal periods of the joint states,
-# and never more than STOP_PERIOD: after a gap the effort catches up over several commands.
+# Largest time of a step toward the model's effort, in nominal periods of the joint states, and at
+# most STOP_PERIOD: after a gap the effort catches up over several commands.
 MAX_PERIODS = 3
-# A ramp advances by at most this time per command, and a step of a stop counts at most the
-# second: a process that stood still goes on where it was instead of skipping the ramp, s.
+# Largest advance of a ramp per command, s: after a standstill of the process the ramp continues
+# instead of being skipped.
 MAX_RAMP_STEP = 0.1
+# Largest time of a step of a stop, s, for the same reason.
 MAX_STOP_STEP = 0.02
-# A stop without a ramp ends within this time whatever the rate limits say, s.
+# Longest stop without a ramp, s, for any rate limits.
 ZERO_WITHIN = 1.0
-# The ramp of a stop after a fault is at most this long, s.
+# Longest ramp of a stop after a fault, s.
 MAX_FAULT_RAMP = 2.0
-# An arm that needs more than its limit for this long is not held by it, s.
+# Longest time above an effort limit, s: the arm is then not held by its limit.
 LONGEST_SATURATION = 2.0
 STOP_BEHAVIORS = ('ramp_to_zero', 'hold', 'zero')
 
@@ -28,7 +32,7 @@ STOP_BEHAVIORS = ('ramp_to_zero', 'hold', 'zero')
 @dataclass(frozen=True)
 class OutputSettings:
     """
-    How the output starts and stops.
+    Timing of the output, and its behavior at a stop.
 
     Attributes
     ----------
@@ -37,9 +41,9 @@ class OutputSettings:
     start_ramp, stop_ramp : float
         Durations, s.
     stop_behavior : str
-        'ramp_to_zero', 'zero' (as fast as the rate limits allow, at most ZERO_WITHIN) or 'hold':
-        after silence of the joint states the last command stays in force; every other stop
-        ramps to zero.
+        'ramp_to_zero'; 'zero': as fast as the rate limits allow, at most ZERO_WITHIN; or 'hold':
+        without fresh joint states the last command stays in force, every other stop ramps to
+        zero.
 
     """
 
@@ -50,34 +54,34 @@ class OutputSettings:
 
 
 class _Ramp:
-    """Progress from 0 to 1 in the time of a steady clock, without pauses of the process."""
+    """Progress from 0 to 1 over a duration, s; standstills of the process do not count."""
 
-    def __init__(self, now=0.0, duration=0.0):
+    def __init__(self, now: float = 0.0, duration: float = 0.0) -> None:
         self.duration = duration
         self._time, self._elapsed = now, 0.0
 
-    def advance(self, now):
-        """Go on to a time, s; of a pause only MAX_RAMP_STEP counts."""
+    def advance(self, now: float) -> None:
+        """Advance to a time, s, by at most MAX_RAMP_STEP."""
         self._elapsed += min(max(now - self._time, 0.0), MAX_RAMP_STEP)
         self._time = now
 
     @property
-    def progress(self):
+    def progress(self) -> float:
         """From 0 to 1."""
         return 1.0 if self._elapsed >= self.duration else self._elapsed / self.duration
 
     @property
-    def remaining(self):
+    def remaining(self) -> float:
         """Time to the end, s."""
         return max(self.duration - self._elapsed, 0.0)
 
 
 class EffortOutput:
     """
-    State machine, ramps and limiter: what is sent for a model effort, and when nothing is.
+    State machine, ramps and limiter: from model efforts to commands.
 
-    Every method takes the time of one steady clock. A returned command must be published, and
-    then `published` be called; None means that nothing may be published.
+    Every method takes the time of one steady clock. The caller must publish a returned command
+    and then call `published`; None means that nothing may be published.
 
     Attributes
     ----------
@@ -88,7 +92,9 @@ class EffortOutput:
 
     """
 
-    def __init__(self, settings, on_change=None):
+    def __init__(
+        self, settings: OutputSettings, on_change: Callable[[OutputState, str], None] | None = None
+    ) -> None:
         self.machine = OutputStateMachine(on_change)
         self.limiter = EffortLimiter(np.zeros(0), np.zeros(0), np.zeros(0))
         self.settings = settings
@@ -97,20 +103,20 @@ class EffortOutput:
         self._start_from = self._stop_from = np.zeros(0)
         self._stop_within = ZERO_WITHIN
         self._difference = np.zeros(0)
-        self._effort = None
+        self._effort: NDArray[np.float64] | None = None
         self._period = STOP_PERIOD
         self._last_time = 0.0
         self._is_first = False
-        self._saturated_since = None
+        self._saturated_since: float | None = None
 
     @property
-    def has_effort_in_force(self):
-        """Whether the output is off and has left an effort at the controller."""
+    def has_effort_in_force(self) -> bool:
+        """Whether the output is off and its last command was not zero."""
         return not self.machine.is_on and bool(self.limiter.last.any())
 
-    def set_limiter(self, limiter):
+    def set_limiter(self, limiter: EffortLimiter) -> None:
         """
-        Replace the limiter; the last command to the same joints stays what it is.
+        Replace the limiter; the last command to the same joints is kept.
 
         Parameters
         ----------
@@ -123,7 +129,7 @@ class EffortOutput:
             self._effort = None
         self.limiter = limiter
 
-    def start(self, now, start_from, reason='enabled'):
+    def start(self, now: float, start_from: NDArray[np.float64], reason: str = 'enabled') -> None:
         """
         Begin the start ramp.
 
@@ -132,12 +138,12 @@ class EffortOutput:
         now : float
             s.
         start_from : numpy.ndarray, shape (m,)
-            The efforts in force now, N m or N.
+            The efforts in force, N m or N.
         reason : str
-            For people.
+            Cause, as text.
 
         """
-        # All fields first: an observer of the new state finds it complete.
+        # All fields before the state: its observer finds them complete.
         self.limiter.resume(start_from)
         self._start_from = self.limiter.last
         self._difference = np.zeros(len(self._start_from))
@@ -151,26 +157,27 @@ class EffortOutput:
             self.machine.fault = ''
         self.machine.enter(OutputState.STARTING, reason)
 
-    def blend(self, now, difference):
+    def blend(self, now: float, difference: NDArray[np.float64]) -> None:
         """
-        Let a change of model, gains or limits go out over the start ramp.
+        Spread a change of model, gains or limits over the start ramp.
 
         Parameters
         ----------
         now : float
             s.
         difference : numpy.ndarray, shape (m,)
-            Target before the change minus target after it, at the same state, N m or N. What is
-            left of an earlier change is added, so that many small changes lag behind and never
-            add up to a step.
+            Target before the change minus target after it, at the same state, N m or N. The rest
+            of an earlier change is added, so that many small changes never add up to a step.
 
         """
         self._difference = self._remaining_difference() + difference
         self._change = _Ramp(now, self.settings.start_ramp)
         self._is_ramping = True
-        self._effort = None  # of the model before
+        self._effort = None  # computed with the previous model
 
-    def follow(self, now, effort, period):
+    def follow(
+        self, now: float, effort: NDArray[np.float64], period: float
+    ) -> NDArray[np.float64] | None:
         """
         Return the command for a model effort computed from a fresh state.
 
@@ -186,6 +193,7 @@ class EffortOutput:
         Returns
         -------
         numpy.ndarray, shape (m,), or None
+            N m or N.
 
         """
         if not self.machine.is_driving:
@@ -193,9 +201,9 @@ class EffortOutput:
         self._effort, self._period = effort, period
         return self._drive(now)
 
-    def between(self, now):
+    def between(self, now: float) -> NDArray[np.float64] | None:
         """
-        Return the next command of a stop, or of a ramp while no new state comes.
+        Return the next command of a stop, or of a ramp between two joint states.
 
         Parameters
         ----------
@@ -205,6 +213,7 @@ class EffortOutput:
         Returns
         -------
         numpy.ndarray, shape (m,), or None
+            N m or N.
 
         """
         waited = now - self._last_time
@@ -214,12 +223,12 @@ class EffortOutput:
             return self._drive(now)
         return None
 
-    def published(self, now):
+    def published(self, now: float) -> None:
         """
-        Note that the last command has gone out.
+        Note that the last command is published.
 
-        The next step is limited by the time since then, and states that promise something about
-        commands (ACTIVE, READY) are entered only now.
+        The next step is limited by the time since then. ACTIVE and READY, which tell the user
+        about commands, are entered only now.
 
         Parameters
         ----------
@@ -234,22 +243,30 @@ class EffortOutput:
         elif self.machine.state == OutputState.STOPPING:
             self._end_stop()
 
-    def stop(self, now, reason, *, is_fault=False, may_hold=False, within=None):
+    def stop(
+        self,
+        now: float,
+        reason: str,
+        *,
+        is_fault: bool = False,
+        may_hold: bool = False,
+        within: float | None = None,
+    ) -> None:
         """
-        Begin to stop, or hasten a stop.
+        Begin a stop, or shorten it.
 
         Parameters
         ----------
         now : float
             s.
         reason : str
-            For people.
+            Cause, as text.
         is_fault : bool
             Whether the stop ends in FAULT.
         may_hold : bool
-            Whether `settings.stop_behavior` 'hold' is obeyed.
+            Whether `settings.stop_behavior` 'hold' applies.
         within : float, optional
-            Longest time that the stop may take, s.
+            Longest duration of the stop, s.
 
         """
         if is_fault:
@@ -277,7 +294,7 @@ class EffortOutput:
         elif is_fault:
             self.machine.enter(OutputState.FAULT, self.machine.fault)
 
-    def abandon(self, reason):
+    def abandon(self, reason: str) -> None:
         """
         End at once in FAULT without another command, because no controller takes it.
 
@@ -286,26 +303,26 @@ class EffortOutput:
         Parameters
         ----------
         reason : str
-            For people.
+            Cause, as text.
 
         """
-        # Also behind a fault whose stop has been cut short: an effort may be left.
+        # Appended to an earlier fault, whose stop is cut short here: an effort may be left.
         self.machine.fault = f'{self.machine.fault}; {reason}' if self.machine.fault else reason
         self.machine.enter(OutputState.FAULT, self.machine.fault)
 
-    def next_tick_in(self, now):
-        """Return when `between` has the next command, s; infinite if it has none."""
+    def next_tick_in(self, now: float) -> float:
+        """Return the time until the next command of `between`, s; infinite without one."""
         if self.machine.state == OutputState.STOPPING:
             return STOP_PERIOD
         if self.machine.is_driving and self._effort is not None and not self._is_settled():
             return max(self._last_time + STOP_PERIOD - now, 0.0)
         return np.inf
 
-    def _drive(self, now):
+    def _drive(self, now: float) -> NDArray[np.float64] | None:
         if self._effort is None:
             return None
         if self._is_first:
-            # It repeats the efforts in force: ramp and steps count the time since a command.
+            # The first command repeats the efforts in force; ramp and steps begin here.
             self._ramp, self._last_time = _Ramp(now, self._ramp.duration), now
         dt = now - self._last_time
         try:
@@ -320,7 +337,7 @@ class EffortOutput:
         self._watch_saturation(now)
         return command
 
-    def _on_the_ramps(self, now, target):
+    def _on_the_ramps(self, now: float, target: NDArray[np.float64]) -> NDArray[np.float64]:
         self._ramp.advance(now)
         self._change.advance(now)
         progress = self._ramp.progress
@@ -330,12 +347,12 @@ class EffortOutput:
             + (1.0 - progress) * self._start_from
         )
 
-    def _remaining_difference(self):
+    def _remaining_difference(self) -> NDArray[np.float64]:
         return (1.0 - self._change.progress) * self._difference
 
-    def _is_settled(self):
-        # The command is what the model wants: no ramp, no rate limit in between. Gravity may
-        # change a hundred times a second: what is left of that is small, and never nothing.
+    def _is_settled(self) -> bool:
+        # The command is the model's effort, without ramp or rate limit. Gravity may change 100
+        # times a second: the rest of that is negligible, but never zero.
         return (
             self._ramp.progress == 1.0
             and self._effort is not None
@@ -343,7 +360,7 @@ class EffortOutput:
             and self.limiter.is_negligible(self._remaining_difference())
         )
 
-    def _begin_fade(self, now, ramp, longest):
+    def _begin_fade(self, now: float, ramp: float, longest: float) -> None:
         self._ramp = _Ramp(now, ramp)
         self._stop_from = self.limiter.last
         self._stop_within = min(max(ramp, ZERO_WITHIN), longest)
@@ -351,25 +368,25 @@ class EffortOutput:
             self._last_time = now
         self._effort = None
 
-    def _fade(self, now):
+    def _fade(self, now: float) -> NDArray[np.float64] | None:
         if self._end_stop():
             return None
         dt = now - self._last_time
         self._ramp.advance(now)
-        # However small the rate limits are, or have become, the stop keeps its bound.
+        # Smallest steps with which the stop keeps its bound, for any rate limits.
         least = np.abs(self._stop_from) * (
             min(max(dt, 0.0), MAX_RAMP_STEP) / max(self._stop_within, STOP_PERIOD)
         )
         target = (1.0 - self._ramp.progress) * self._stop_from
         try:
             command = self.limiter.step(target.tolist(), min(dt, MAX_STOP_STEP), least.tolist())
-        except InvalidEffortError:  # limits that are no numbers: a stop has to end all the same
+        except InvalidEffortError:  # limits that are not finite: the stop ends at once
             self.limiter.reset()
             command = self.limiter.last
         self._last_time = now
         return command
 
-    def _end_stop(self):
+    def _end_stop(self) -> bool:
         if self._ramp.progress < 1.0 or self.limiter.last.any():
             return False
         if self.machine.fault:
@@ -378,7 +395,7 @@ class EffortOutput:
             self.machine.enter(OutputState.READY, f'stopped: {self.machine.reason}')
         return True
 
-    def _watch_saturation(self, now):
+    def _watch_saturation(self, now: float) -> None:
         if not self.limiter.is_saturated:
             self._saturated_since = None
         elif self._saturated_since is None:

@@ -1,34 +1,37 @@
-"""How fast gravity may turn while an arm is driven."""
+"""Limits of the rate at which gravity may change while an arm is driven."""
 
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-# Turn that is accepted at once, rad, and per second after that, rad/s: an inertial sensor on a
-# tilting base stays below, a wrong sign or a broken sample does not.
+# Largest turn at once, rad: an inertial sensor on a tilting base stays below, a wrong sign or a
+# broken sample does not.
 MAX_TURN = math.radians(30.0)
+# Largest turn over time, rad/s.
 TURN_RATE = math.radians(30.0)
-# The same for the size of gravity, m/s² and m/s² per s.
+# Largest change of magnitude at once, m/s².
 MAX_CHANGE = 2.0
+# Largest change of magnitude over time, m/s² per s.
 CHANGE_RATE = 1.0
 
 
 class GravityChange:
     """
-    Limits how far gravity turns and grows over time, however many calls change it.
+    Limits the change of gravity over time, for any number of calls.
 
-    A reference follows the accepted gravity at limited rates; what is further from the reference
-    than MAX_TURN or MAX_CHANGE is refused.
+    A reference follows the accepted gravity at limited rates; a gravity further from the
+    reference than MAX_TURN or MAX_CHANGE is refused.
 
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._reference = self._accepted = np.zeros(3)
         self._time = -math.inf
 
-    def begin(self, now, gravity):
+    def begin(self, now: float, gravity: ArrayLike) -> None:
         """
-        Take the gravity with which the output is enabled.
+        Start from the gravity with which the output is enabled.
 
         Parameters
         ----------
@@ -41,21 +44,21 @@ class GravityChange:
         self._reference = self._accepted = np.array(gravity, dtype=float)
         self._time = now
 
-    def refusal(self, now, gravity):
+    def refusal(self, now: float, gravity: ArrayLike) -> str:
         """
-        Return why gravity must not change like this; '' if it may.
+        Return the reason to refuse a change of gravity.
 
         Parameters
         ----------
         now : float
             Steady clock, s.
         gravity : array_like, shape (3,)
-            As it would become, m/s².
+            The new gravity, m/s².
 
         Returns
         -------
         str
-            Expected, got, what to do.
+            Expected, got, what to do; '' if the change is accepted.
 
         """
         gravity = np.array(gravity, dtype=float)
@@ -85,12 +88,12 @@ class GravityChange:
             )
         return ''
 
-    def accept(self, now, gravity):
-        """Note that gravity has changed, m/s²; `refusal` was empty."""
+    def accept(self, now: float, gravity: ArrayLike) -> None:
+        """Record a new gravity, m/s², that `refusal` accepts."""
         self._reference = self._reference_at(now)
         self._time, self._accepted = now, np.array(gravity, dtype=float)
 
-    def _reference_at(self, now):
+    def _reference_at(self, now: float) -> NDArray[np.float64]:
         dt = max(now - self._time, 0.0)
         size, goal = np.linalg.norm(self._reference), np.linalg.norm(self._accepted)
         if not size or not goal or math.isinf(dt):
@@ -108,5 +111,5 @@ class GravityChange:
         )
 
 
-def _angle(a, b):
+def _angle(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
     return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(np.dot(a, b)))

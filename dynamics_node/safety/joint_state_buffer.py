@@ -1,42 +1,59 @@
-"""The newest measured state of every joint, merged from messages in any order."""
+"""
+The newest measured state of every joint: which joint states are accepted, and their age.
+
+Messages are checked against the joints' motion limits and, by their stamps, against the clock.
+
+"""
 
 from collections import Counter
+from collections.abc import Iterable, Sequence
 import math
+from typing import NoReturn
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .motion_limits import MotionLimits
-from ..errors import DynamicsError, quoted
+from ..errors import quoted, RejectedStateError
 
-# More names than any robot has: such a message is refused before its arrays are touched.
+# Largest number of names in a message; a longer one is refused before its arrays are read.
 MAX_NAMES = 4096
 # A single impossible position may be a transmission error; this many in a row are a fault.
 MAX_JUMPS = 3
+# Smallest tolerance of stamps, s: synchronized clocks of two machines differ by less.
+SMALLEST_TOLERANCE = 0.1
 
 
 class JointStateBuffer:
     """
     Positions, velocities and efforts by joint name.
 
-    Messages may name the joints in any order, only some of them, and others besides. A message
-    is taken whole or rejected whole; a rejected one does not make anything fresh.
+    A message may contain the joints in any order, some of them only, and other joints. It is
+    accepted or rejected as a whole; a rejected message makes no joint fresh.
 
     Attributes
     ----------
     accepted : int
-        Messages taken.
+        Number of accepted messages.
     breaks : int
-        How often everything measured was forgotten; see `forget`.
+        Number of times that all measurements were forgotten; see `forget`.
     rejected : collections.Counter
-        Messages dropped, by kind.
+        Number of dropped messages, by kind.
     tolerance : StampTolerance
-        How far stamps may be from the clock; may be replaced.
+        Largest difference between stamps and the clock; may be replaced.
     limits : MotionLimits
-        How far and fast the joints can move.
+        Position and velocity limits of the joints; may be replaced.
 
     """
 
-    def __init__(self, names, needed, neutral, limits=None, tolerance=None):
+    def __init__(
+        self,
+        names: Sequence[str],
+        needed: Sequence[str],
+        neutral: ArrayLike,
+        limits: MotionLimits | None = None,
+        tolerance: 'StampTolerance | None' = None,
+    ) -> None:
         """
         Start without measurements.
 
@@ -45,11 +62,11 @@ class JointStateBuffer:
         names : sequence of str
             All n joints of the robot.
         needed : sequence of str
-            Those that must be fresh for a state to be usable.
-        neutral : numpy.ndarray, shape (n,)
-            Where a joint is taken to stand until it is measured, rad or m.
+            The joints that must be fresh for a usable state.
+        neutral : array_like, shape (n,)
+            Assumed position of a joint until its first measurement, rad or m.
         limits : MotionLimits, optional
-            Of the n joints; none by default.
+            Limits of the n joints; none by default.
         tolerance : StampTolerance, optional
 
         """
@@ -58,9 +75,9 @@ class JointStateBuffer:
         self._needed = [self._index[name] for name in needed]
         self.limits = limits or MotionLimits.none(names)
         self.tolerance = tolerance or StampTolerance(0.0)
-        # Lists, not arrays: for the few joints of a robot plain numbers are several times as
-        # fast as numpy, and this runs for every state before its command goes out.
-        self._position = np.array(neutral, dtype=float).tolist()
+        # Lists instead of arrays: for the few joints of a robot, plain numbers are several times
+        # faster than numpy, and every command waits for this.
+        self._position: list[float] = np.array(neutral, dtype=float).tolist()
         self._velocity = [math.nan] * len(names)
         self._effort = [math.nan] * len(names)
         self._time = [-math.inf] * len(names)
@@ -70,31 +87,31 @@ class JointStateBuffer:
         self._jumps = 0
         self._jumped_joint = -1
         self._clock = 0
-        self._known_names = None
+        self._known_names: list[str] | None = None
         self._pairs: list[tuple[int, int]] = []
         self._needed_pairs: list[tuple[int, int]] = []
         self._has_all_needed = False
         self.accepted = self.breaks = 0
         self.rejected: Counter[str] = Counter()
 
-    def follow_clock(self, clock):
+    def follow_clock(self, clock: int) -> float:
         """
-        Compare the clock of the stamps with the last one; forget all measurements if it is behind.
+        Forget all measurements if the clock of the stamps has gone back.
 
         Parameters
         ----------
         clock : int
-            That clock now, ns.
+            Current time of that clock, ns.
 
         Returns
         -------
         float
-            By how much it has gone back, s; 0.0 for less than stamps may be wrong anyway.
+            The step back, s; 0.0 if it is within the tolerance of stamps.
 
         Raises
         ------
         RejectedStateError
-            Kind 'no clock': it stands at zero, so it is simulated time that nobody publishes.
+            Kind 'no clock': the clock is zero, so simulated time has no publisher.
 
         """
         if not clock:
@@ -110,12 +127,21 @@ class JointStateBuffer:
         self.forget()
         return back
 
-    def update(self, now, names, positions, velocities=(), stamp=0, clock=0, efforts=()):
+    def update(
+        self,
+        now: float,
+        names: Sequence[str],
+        positions: Sequence[float],
+        velocities: Sequence[float] = (),
+        stamp: int = 0,
+        clock: int = 0,
+        efforts: Sequence[float] = (),
+    ) -> None:
         """
-        Take one message.
+        Accept or reject one message.
 
-        The age of its joints counts from the stamp where there is one: a state that has been
-        delayed on its way is as old as it is, not as young as its arrival.
+        The age of its joints counts from the stamp if there is one, so that a delay on the way
+        counts as age.
 
         Parameters
         ----------
@@ -123,25 +149,25 @@ class JointStateBuffer:
             Arrival on a steady clock, s.
         names : list of str
         positions : sequence of float
-            As many as names, rad or m.
+            One per name, rad or m.
         velocities : sequence of float
-            As many as names or empty; NaN where unknown.
+            One per name, or empty, rad/s or m/s; NaN where unknown.
         stamp : int
-            When the state was measured, ns; 0 if the message does not say it.
+            Time of the measurement, ns; 0 if unknown.
         clock : int
-            Arrival on the clock that stamps belong to, ns.
+            Arrival on the clock of the stamps, ns.
         efforts : sequence of float
-            As many as names; anything else makes them unknown, and is no reason to drop a state
-            whose positions are good.
+            One per name, N m or N. With another length the efforts are unknown, and the message
+            is still accepted.
 
         Raises
         ------
         RejectedStateError
-            If lengths differ, a name comes twice, the stamp is far from the clock or not newer
-            than the last one, or the position of a needed joint is not finite or further from
-            one that is still fresh than the joint can have moved. That of another joint is
-            passed over. The third jump in a row is a fault: the last position is forgotten, so
-            that the next message counts.
+            If lengths differ, a name is repeated, the stamp is far from the clock or not newer
+            than the last one, or a needed joint has a position that is not finite or that it
+            cannot have reached since its last, still fresh measurement. Such positions of other
+            joints are ignored. The third jump in a row is a fault: all measurements are
+            forgotten, so that the next message is accepted.
 
         """
         try:
@@ -151,10 +177,18 @@ class JointStateBuffer:
             raise
         self._take_efforts(efforts, len(names))
         if self._jumps and any(target == self._jumped_joint for _, target in self._needed_pairs):
-            self._jumps = 0  # it is the joint itself that stands where it may
+            self._jumps = 0  # the joint that jumped has reported a plausible position again
         self.accepted += 1
 
-    def _update(self, now, names, positions, velocities, stamp, clock):
+    def _update(
+        self,
+        now: float,
+        names: Sequence[str],
+        positions: Sequence[float],
+        velocities: Sequence[float],
+        stamp: int,
+        clock: int,
+    ) -> None:
         if names != self._known_names:
             self._learn(names)
         if len(positions) != len(names):
@@ -176,9 +210,9 @@ class JointStateBuffer:
         position, velocity, time, stamps = self._position, self._velocity, self._time, self._stamp
         has_velocities = len(velocities) > 0
         if any(map(math.isinf, velocities)):
-            # No joint is that fast: it is not known how fast it is.
+            # An infinite velocity is a wrong measurement: it is unknown.
             velocities = [math.nan if math.isinf(value) else value for value in velocities]
-        # The tolerance above has made sure that the stamp is credible.
+        # The stamp is credible: the tolerance has been checked above.
         measured = now - max(clock - stamp, 0) * 1e-9 if stamp else now
         for source, target in pairs:
             position[target] = positions[source]
@@ -192,7 +226,7 @@ class JointStateBuffer:
             else min((self._time[i] for i in self._needed), default=-math.inf)
         )
 
-    def _take_efforts(self, efforts, count):
+    def _take_efforts(self, efforts: Sequence[float], count: int) -> None:
         effort = self._effort
         if len(efforts) != count:
             for _, target in self._pairs:
@@ -202,12 +236,12 @@ class JointStateBuffer:
             value = efforts[source]
             effort[target] = math.nan if math.isinf(value) else value
 
-    def _check_order(self, pairs, stamp, clock):
+    def _check_order(self, pairs: list[tuple[int, int]], stamp: int, clock: int) -> None:
         if stamp > self._newest_stamp:
             return
         last = max((self._stamp[target] for _, target in pairs), default=0)
-        # A stamp that was true once and is ahead by now: the clock was set back, and what was
-        # measured before says nothing about the order any more.
+        # A last stamp ahead of the clock: the clock was set back, so stamps of earlier
+        # measurements no longer tell the order.
         if stamp > last or self.tolerance.is_ahead(last, clock):
             return
         kind = 'repeated' if stamp == last else 'going back'
@@ -217,22 +251,22 @@ class JointStateBuffer:
             f'{(last - stamp) * 1e-9:.3f} s: does a bag loop, or do two nodes publish?',
         )
 
-    def _check_steps(self, now, positions, stamp):
+    def _check_steps(self, now: float, positions: Sequence[float], stamp: int) -> None:
         small, position = self.limits.small_steps, self._position
         for source, target in self._needed_pairs:
-            # Nearly every step is possible in however short a time.
+            # Nearly every step is so small that it is possible in any time.
             if not -small[target] <= positions[source] - position[target] <= small[target]:
                 self._check_step(target, now, positions[source], stamp)
 
-    def _check_step(self, joint, now, position, stamp):
+    def _check_step(self, joint: int, now: float, position: float, stamp: int) -> None:
         if now - self._time[joint] > self.tolerance.seconds:
-            return  # too long ago to say where the joint can be by now
+            return  # stale: the joint can have reached any position
         last = self._stamp[joint]
         dt = (stamp - last) * 1e-9 if stamp and last else now - self._time[joint]
         if self.limits.is_impossible(joint, self._position[joint], position, dt):
             self._jumped(joint, position, dt)
 
-    def _jumped(self, joint, position, dt):
+    def _jumped(self, joint: int, position: float, dt: float) -> NoReturn:
         text = (
             'expected a position that the joint can have reached, got '
             + self.limits.describe_jump(joint, self._position[joint], position, dt)
@@ -244,11 +278,11 @@ class JointStateBuffer:
         self.forget()
         raise RejectedStateError('jump', f'{text}, {MAX_JUMPS} times in a row', is_fault=True)
 
-    def forget(self):
+    def forget(self) -> None:
         """
-        Take no joint for measured any more, because the time or the arm has jumped.
+        Forget all measurements, because the clock or the arm has jumped.
 
-        `age` goes on from the last state: a reset does not count as a fresh measurement.
+        `age` continues from the last state: a reset does not count as a fresh measurement.
 
         """
         self._forgotten = max(self._oldest, self._forgotten)
@@ -260,7 +294,7 @@ class JointStateBuffer:
         self._stamp = [0] * len(self._names)
         self._newest_stamp = 0
 
-    def _finite_pairs(self, positions):
+    def _finite_pairs(self, positions: Sequence[float]) -> list[tuple[int, int]]:
         wrong = {target for source, target in self._pairs if not math.isfinite(positions[source])}
         missing = [self._names[i] for _, i in self._pairs if i in wrong and i in self._needed]
         if missing:
@@ -270,16 +304,16 @@ class JointStateBuffer:
             )
         return [(source, target) for source, target in self._pairs if target not in wrong]
 
-    def _learn(self, names):
-        # The mapping by name; kept until a message names other joints or another order.
+    def _learn(self, names: Sequence[str]) -> None:
+        # The mapping by name, kept until a message has other joints or another order.
         if len(names) > MAX_NAMES:
             raise too_many_names(len(names))
         if len(set(names)) != len(names):
-            twice = sorted(name for name, count in Counter(names).items() if count > 1)
-            # Anybody may have written them: short, and without what a terminal would obey.
+            repeated = sorted(name for name, count in Counter(names).items() if count > 1)
+            # Untrusted text: quoted, without control characters, at most five names.
             raise RejectedStateError(
                 'name twice',
-                'expected each joint once, got twice: ' + ', '.join(map(quoted, twice[:5])),
+                'expected each joint once, got twice: ' + ', '.join(map(quoted, repeated[:5])),
             )
         self._pairs = [
             (i, self._index[name]) for i, name in enumerate(names) if name in self._index
@@ -290,60 +324,60 @@ class JointStateBuffer:
         self._known_names = list(names)
 
     @property
-    def position(self):
-        """Newest positions, or neutral ones where never measured; shape (n,), a copy."""
+    def position(self) -> NDArray[np.float64]:
+        """Newest positions, neutral where never measured, rad or m; shape (n,), a copy."""
         return np.array(self._position, dtype=float)
 
     @property
-    def velocity(self):
-        """Newest velocities, NaN where unknown; shape (n,), a copy."""
+    def velocity(self) -> NDArray[np.float64]:
+        """Newest velocities, rad/s or m/s, NaN where unknown; shape (n,), a copy."""
         return np.array(self._velocity, dtype=float)
 
     @property
-    def effort(self):
-        """Newest efforts, NaN where unknown; shape (n,), a copy."""
+    def effort(self) -> NDArray[np.float64]:
+        """Newest efforts, N m or N, NaN where unknown; shape (n,), a copy."""
         return np.array(self._effort, dtype=float)
 
     @property
-    def needed_effort(self):
-        """Newest efforts of the needed joints, NaN where unknown; a copy."""
+    def needed_effort(self) -> NDArray[np.float64]:
+        """Newest efforts of the needed joints, N m or N, NaN where unknown; a copy."""
         return np.array([self._effort[i] for i in self._needed])
 
     @property
-    def measured(self):
-        """When the oldest of the needed joints was measured, ns; 0 where that is not said."""
+    def measured(self) -> int:
+        """Stamp of the oldest measurement of a needed joint, ns; 0 if it has none."""
         return min((self._stamp[i] for i in self._needed), default=0)
 
     @property
-    def newest_measured(self):
-        """When the newest of the needed joints was measured, ns; 0 where that is not said."""
+    def newest_measured(self) -> int:
+        """Stamp of the newest measurement of a needed joint, ns; 0 if it has none."""
         return max((self._stamp[i] for i in self._needed), default=0)
 
     @property
-    def newest_names(self):
-        """Names in the newest message whose names could be used, whatever came of the rest."""
+    def newest_names(self) -> tuple[str, ...]:
+        """Joint names of the last message with valid names, even if it was then rejected."""
         return tuple(self._known_names or ())
 
-    def joints_without_velocity(self):
-        """Return the names of the needed joints whose velocity is unknown, a list of str."""
+    def joints_without_velocity(self) -> list[str]:
+        """Return the names of the needed joints with unknown velocity."""
         return [self._names[i] for i in self._needed if math.isnan(self._velocity[i])]
 
     @property
-    def is_complete(self):
-        """Whether every needed joint has been measured, however long ago."""
+    def is_complete(self) -> bool:
+        """Whether every needed joint has been measured, at any time."""
         return self._oldest > -math.inf
 
-    def runaway(self):
-        """Return which needed joints are above their velocity limit; '' if none is."""
+    def runaway(self) -> str:
+        """Return the needed joints above their velocity limits, as text; '' if there are none."""
         return self.limits.runaway(self._needed, self._velocity)
 
-    def outside(self):
-        """Return which needed joints stand beyond their position limits; '' if none does."""
+    def outside(self) -> str:
+        """Return the needed joints beyond their position limits, as text; '' if there are none."""
         return self.limits.outside(self._needed, self._position)
 
-    def age(self, now):
+    def age(self, now: float) -> float:
         """
-        Return how old the oldest of the needed joints is.
+        Return the age of the oldest measurement of a needed joint.
 
         Parameters
         ----------
@@ -353,27 +387,30 @@ class JointStateBuffer:
         Returns
         -------
         float
-            s; infinite while a needed joint was never measured.
+            s; infinite before the first measurement of every needed joint.
 
         """
         return now - max(self._oldest, self._forgotten)
 
-    def stale_joints(self, now, timeout, joints=None):
+    def stale_joints(
+        self, now: float, timeout: float, joints: Iterable[int] | None = None
+    ) -> list[str]:
         """
-        Return which needed joints are missing, or which of some others.
+        Return the joints without a fresh measurement.
 
         Parameters
         ----------
         now : float
             The same steady clock, s.
         timeout : float
-            Age that is still fresh, s.
-        joints : sequence of int, optional
-            Places of joints, instead of those that are needed.
+            Largest age of a fresh measurement, s.
+        joints : iterable of int, optional
+            Indices of the joints in question; the needed joints by default.
 
         Returns
         -------
         list of str
+            Their names.
 
         """
         return [
@@ -383,48 +420,25 @@ class JointStateBuffer:
         ]
 
 
-def too_many_names(count):
-    """Return the error about a message with more names than any robot has."""
+def too_many_names(count: int) -> RejectedStateError:
+    """Return the error about a message with more than MAX_NAMES names."""
     return RejectedStateError('too many names', f'expected at most {MAX_NAMES} names, got {count}')
-
-
-class RejectedStateError(DynamicsError):
-    """
-    A joint state message was dropped.
-
-    Attributes
-    ----------
-    kind : str
-        Short and constant, for counting.
-    is_fault : bool
-        Whether the arm must not be driven any further.
-
-    """
-
-    def __init__(self, kind, message, is_fault=False):
-        self.kind = kind
-        self.is_fault = is_fault
-        super().__init__(message)
-
-
-# However short the timeout: clocks of two machines that are synchronized differ by less.
-SMALLEST_TOLERANCE = 0.1
 
 
 class StampTolerance:
     """
-    Compares stamps with the node's own clock.
+    Compares stamps with the node's clock.
 
     Attributes
     ----------
     seconds : float
-        The largest difference that is accepted, in both directions, s.
+        Largest accepted difference in both directions, s.
 
     """
 
-    def __init__(self, state_timeout):
+    def __init__(self, state_timeout: float) -> None:
         """
-        Accept what is not older than a state may be.
+        Set the tolerance from the state timeout.
 
         Parameters
         ----------
@@ -435,7 +449,7 @@ class StampTolerance:
         self.seconds = max(state_timeout, SMALLEST_TOLERANCE)
         self._nanoseconds = round(self.seconds * 1e9)
 
-    def check(self, stamp, clock):
+    def check(self, stamp: int, clock: int) -> None:
         """
         Refuse a stamp that is too far from the clock.
 
@@ -444,12 +458,12 @@ class StampTolerance:
         stamp : int
             ns.
         clock : int
-            The time at which the message arrived, on the clock that stamps belong to, ns.
+            Arrival of the message on the clock of the stamps, ns.
 
         Raises
         ------
         RejectedStateError
-            Kind 'stamp'; says by how much, and what to look for.
+            Kind 'stamp', with the difference and its probable causes.
 
         """
         late = clock - stamp
@@ -463,6 +477,6 @@ class StampTolerance:
             'set use_sim_time on both sides or on neither',
         )
 
-    def is_ahead(self, stamp, clock):
-        """Tell whether a stamp that was accepted once lies in the future of the clock by now."""
+    def is_ahead(self, stamp: int, clock: int) -> bool:
+        """Tell whether a stamp, accepted earlier, is now in the future of the clock."""
         return stamp - clock > self._nanoseconds

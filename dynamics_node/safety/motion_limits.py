@@ -1,49 +1,58 @@
-"""How far and how fast joints can have moved."""
+"""Limits of the joints' motion: impossible steps, runaway, positions outside."""
 
+from collections.abc import Iterable, Sequence
 import math
 
-# A step that needs more than this many times the velocity limit is a wrong measurement.
+# Largest velocity of a possible step, relative to the velocity limit; a faster step is a wrong
+# measurement.
 JUMP_MARGIN = 2.0
-# Two messages may come closer together than their measurements were made, s.
+# Smallest time of a step, s: messages may arrive closer together than their measurements.
 SHORTEST_STEP = 0.01
 
 
 class MotionLimits:
     """
-    What the joints of one robot can do; unknown limits are infinite.
+    Position and velocity limits of the joints of one robot; unknown limits are infinite.
 
     Attributes
     ----------
     names : tuple of str
     small_steps : list of float
-        How far each joint can move between any two messages, rad or m.
+        Step of each joint that is possible between any two messages, rad or m.
 
     """
 
-    def __init__(self, names, velocity, position, is_continuous, allowed_velocity=None):
+    def __init__(
+        self,
+        names: Sequence[str],
+        velocity: Iterable[float],
+        position: Iterable[tuple[float, float]],
+        is_continuous: Iterable[bool],
+        allowed_velocity: Iterable[float] | None = None,
+    ) -> None:
         """
-        Keep the limits of n joints.
+        Store the limits of n joints.
 
         Parameters
         ----------
         names : sequence of str
         velocity : numpy.ndarray, shape (n,)
-            Largest speed that the joint can reach, rad/s or m/s; NaN if not known.
+            Largest possible velocity, rad/s or m/s; NaN if unknown.
         position : numpy.ndarray, shape (n, 2)
-            Lowest and highest, rad or m; infinite if there is none.
+            Lowest and highest position, rad or m; infinite without limit.
         is_continuous : numpy.ndarray of bool, shape (n,)
-            Joints that turn without end: a whole turn more or less is the same position.
+            Joints that turn without end: positions a whole turn apart are the same.
         allowed_velocity : numpy.ndarray, shape (n,), optional
-            Speed above which a joint runs away, rad/s or m/s, NaN for none; by default
+            Velocity above which a joint runs away, rad/s or m/s, NaN for none; by default
             `velocity`.
 
         """
         self.names = tuple(names)
-        # Infinity instead of NaN: every comparison with it says that the limit is kept. Lists,
-        # not arrays: plain numbers are several times as fast, and every state asks.
+        # Infinity instead of NaN: every value is within an infinite limit. Lists instead of
+        # arrays: plain numbers are several times faster, and every joint state is checked.
         allowed = velocity if allowed_velocity is None else allowed_velocity
         self._allowed = [math.inf if math.isnan(limit) else float(limit) for limit in allowed]
-        # A limit that is allowed above the URDF's says that the joint can be that fast.
+        # An allowed velocity above the URDF's limit is also possible.
         self._velocity = [
             allowed
             if math.isnan(limit)
@@ -57,18 +66,19 @@ class MotionLimits:
         self._is_continuous = [bool(is_endless) for is_endless in is_continuous]
 
     @classmethod
-    def none(cls, names):
-        """Return limits that let everything pass."""
+    def none(cls, names: Sequence[str]) -> 'MotionLimits':
+        """Return infinite limits."""
         n = len(names)
         return cls(names, [math.nan] * n, [(-math.inf, math.inf)] * n, [False] * n)
 
-    def is_impossible(self, joint, before, after, dt):
+    def is_impossible(self, joint: int, before: float, after: float, dt: float) -> bool:
         """
-        Tell whether a joint cannot have moved like this.
+        Tell whether a step is beyond the largest velocity of a joint.
 
         Parameters
         ----------
         joint : int
+            Index of the joint.
         before, after : float
             Positions, rad or m.
         dt : float
@@ -89,28 +99,28 @@ class MotionLimits:
             and abs(math.remainder(step, 2.0 * math.pi)) <= reach
         )
 
-    def describe_jump(self, joint, before, after, dt):
-        """Return in words how far a joint has jumped, and how far it can have moved."""
+    def describe_jump(self, joint: int, before: float, after: float, dt: float) -> str:
+        """Return an impossible step as text: positions (rad or m), time (s), velocity limit."""
         return (
             f'{self.names[joint]} from {before:.4g} to {after:.4g} within {dt:.3f} s, at a '
             f'velocity limit of {self._velocity[joint]:g}'
         )
 
-    def runaway(self, joints, velocity):
+    def runaway(self, joints: Iterable[int], velocity: Sequence[float]) -> str:
         """
-        Return which joints are above their allowed velocity.
+        Return the joints above their allowed velocity.
 
         Parameters
         ----------
-        joints : sequence of int
-            Those to look at.
+        joints : iterable of int
+            Indices of the joints in question.
         velocity : sequence of float
-            Of all joints, rad/s or m/s; NaN where not known.
+            Velocities of all joints, rad/s or m/s; NaN where unknown.
 
         Returns
         -------
         str
-            '' if there is none; otherwise names, velocities and limits.
+            Names, velocities and limits; '' if there is none.
 
         """
         allowed = self._allowed
@@ -121,21 +131,21 @@ class MotionLimits:
             f'{self.names[i]} at {velocity[i]:.4g} (limit {allowed[i]:g})' for i in fast
         )
 
-    def outside(self, joints, position):
+    def outside(self, joints: Iterable[int], position: Sequence[float]) -> str:
         """
-        Return which joints stand beyond their position limits.
+        Return the joints beyond their position limits.
 
         Parameters
         ----------
-        joints : sequence of int
-            Those to look at.
+        joints : iterable of int
+            Indices of the joints in question.
         position : sequence of float
-            Of all joints, rad or m.
+            Positions of all joints, rad or m.
 
         Returns
         -------
         str
-            '' if there is none; otherwise names, positions and limits.
+            Names, positions and limits; '' if there is none.
 
         """
         lower, upper = self._lower, self._upper

@@ -1,53 +1,72 @@
-"""From a joint state to a command: the one class that owns everything in between."""
+"""From a joint state to a command: one class owns every step in between."""
 
 from collections import deque
+from collections.abc import Callable, Sequence
 import math
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .effort_output import EffortOutput, STOP_PERIOD
-from .joint_state_buffer import JointStateBuffer, RejectedStateError, StampTolerance
+from .effort_limiter import EffortLimiter
+from .effort_output import EffortOutput, OutputSettings, STOP_PERIOD
+from .joint_state_buffer import JointStateBuffer, StampTolerance
+from .motion_limits import MotionLimits
 from .state_machine import OutputState
+from ..errors import RejectedStateError
 
-# The nominal period of the joint states is the median of this many.
+# Number of intervals whose median is the nominal period of the joint states.
 PERIODS = 9
 # Shortest time between two ticks, s.
 MIN_TICK = 0.001
-# Starts that begin anew before the one before was over: more of them in a row are a fault.
+# Largest number of restarts before a start ramp has ended; more are a fault.
 MAX_RESTARTS = 3
-# The search for other publishers and controllers may be overdue by at most this time while
-# efforts are sent, s.
+# Longest time without a search for other publishers and controllers while efforts are sent, s.
 MAX_MONITOR_AGE = 2.0
+
+
+class Compensation(Protocol):
+    """The model behind the efforts; see `dynamics.Compensation`."""
+
+    @property
+    def needs_velocity(self) -> bool:
+        """Whether `torques` reads the velocity; otherwise it may be None."""
+
+    def torques(
+        self, position: NDArray[np.float64], velocity: NDArray[np.float64] | None, /
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return gravity torque and effort to send, N m or N, each of shape (m,)."""
 
 
 class TorquePath:
     """
-    Takes joint states, gives commands, and is the only one to start and stop them.
+    Turns joint states into commands; only this class starts and stops them.
 
     A joint state is checked against the clock and the joints' limits and merged by name
     (`buffer`), turned into an effort (`compensation`), and limited (`output`). Every method
-    takes the time of one steady clock, s. A returned command must be published by the caller,
-    who then calls `published`; None means that nothing may be published.
+    takes the time of one steady clock, s. The caller must publish a returned command and then
+    call `published`; None means that nothing may be published.
 
     Attributes
     ----------
     output : EffortOutput
-        State machine, ramps and limiter. To be read from outside, and changed only here.
+        State machine, ramps and limiter. Other classes only read it.
     buffer : JointStateBuffer
-        The measured joints; of no joint until `use`.
-    compensation : object
-        Its `torques(q, qd)` returns the gravity torque and the effort to send, both of shape
-        (m,), N m or N; qd is None unless `needs_velocity`; see `dynamics.Compensation`.
+        The measured joints; without joints until `use`.
+    compensation : Compensation or None
+        None without a robot.
     is_usable : bool
         Whether the newest joint state gave a gravity torque.
     gravity_torque : numpy.ndarray, shape (m,)
         G of the chosen joints at that state, N m or N.
     is_closed : bool
-        Whether the process is about to end, so that nothing starts any more.
+        Whether the process is about to end, so that the output cannot start again.
 
     """
 
-    def __init__(self, settings, on_change=None):
+    def __init__(
+        self, settings: OutputSettings, on_change: Callable[[OutputState, str], None] | None = None
+    ) -> None:
         """
         Start with the output off and without a robot.
 
@@ -60,40 +79,40 @@ class TorquePath:
         """
         self.output = EffortOutput(settings, on_change)
         self.buffer = JointStateBuffer((), (), np.zeros(0))
-        self.compensation = None
+        self.compensation: Compensation | None = None
         self.is_usable = self.is_closed = False
-        self.gravity_torque = np.zeros(0)
+        self.gravity_torque: NDArray[np.float64] = np.zeros(0)
         self._restarts = 0
         self._periods: deque[float] = deque(maxlen=PERIODS)
         self._last_arrival = -math.inf
         self._last_look = self._last_tick = self._last_monitored = -math.inf
 
     @property
-    def state(self):
+    def state(self) -> OutputState:
         """The state of the output, an OutputState."""
         return self.output.machine.state
 
     @property
-    def is_driving(self):
+    def is_driving(self) -> bool:
         """Whether commands follow the model: STARTING and ACTIVE."""
         return self.output.machine.is_driving
 
     @property
-    def is_on(self):
+    def is_on(self) -> bool:
         """Whether commands are published: STARTING, ACTIVE and STOPPING."""
         return self.output.machine.is_on
 
     @property
-    def period(self):
+    def period(self) -> float:
         """Nominal period of the joint states, s: the median of the newest ones."""
         periods = sorted(self._periods)
         return periods[len(periods) // 2] if periods else STOP_PERIOD
 
     # ----------------------------------------------------------------- robot and parameters
 
-    def use(self, buffer):
+    def use(self, buffer: JointStateBuffer) -> None:
         """
-        Take another robot's joints; the output is off.
+        Switch to the joints of another robot while the output is off.
 
         Parameters
         ----------
@@ -106,9 +125,16 @@ class TorquePath:
         self._periods.clear()
         self._last_arrival = -math.inf
 
-    def configure(self, now, settings, compensation, limiter, motion_limits):
+    def configure(
+        self,
+        now: float,
+        settings: OutputSettings,
+        compensation: Compensation,
+        limiter: EffortLimiter,
+        motion_limits: MotionLimits,
+    ) -> None:
         """
-        Take over model and parameters; while driving, a change goes out over the start ramp.
+        Apply model and parameters; while driving, a change is spread over the start ramp.
 
         Parameters
         ----------
@@ -132,8 +158,8 @@ class TorquePath:
         if (difference := before - after).any():
             self.output.blend(now, difference)
 
-    def _target(self):
-        # Where the newest state's effort would lead without ramps and rate limits.
+    def _target(self) -> NDArray[np.float64] | None:
+        # The command for the newest state without ramps and rate limits.
         if self.compensation is None or not self.buffer.is_complete:
             return None
         _, effort = self._torques(self.compensation)
@@ -141,17 +167,26 @@ class TorquePath:
             return None
         return np.array(self.output.limiter.target(effort))
 
-    def _torques(self, compensation):
+    def _torques(
+        self, compensation: Compensation
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         velocity = self.buffer.velocity if compensation.needs_velocity else None
         return compensation.torques(self.buffer.position, velocity)
 
     # --------------------------------------------------------------- joint states and ticks
 
     def process_joint_state(
-        self, now, names, positions, velocities=(), stamp=0, clock=0, efforts=()
-    ):
+        self,
+        now: float,
+        names: Sequence[str],
+        positions: Sequence[float],
+        velocities: Sequence[float] = (),
+        stamp: int = 0,
+        clock: int = 0,
+        efforts: Sequence[float] = (),
+    ) -> NDArray[np.float64] | None:
         """
-        Take a joint state; return the command that follows from it.
+        Accept a joint state and return the command for it.
 
         Parameters
         ----------
@@ -163,6 +198,7 @@ class TorquePath:
         Returns
         -------
         numpy.ndarray, shape (m,), or None
+            N m or N.
 
         Raises
         ------
@@ -185,7 +221,16 @@ class TorquePath:
         self.is_usable = True
         return self.output.follow(now, effort, self.period) if self.is_driving else None
 
-    def _take(self, now, names, positions, velocities, stamp, clock, efforts):
+    def _take(
+        self,
+        now: float,
+        names: Sequence[str],
+        positions: Sequence[float],
+        velocities: Sequence[float],
+        stamp: int,
+        clock: int,
+        efforts: Sequence[float],
+    ) -> None:
         try:
             back = self.buffer.follow_clock(clock)
             if back:
@@ -199,9 +244,9 @@ class TorquePath:
         if fast:
             self.fault(now, f'runaway: {fast}, above velocity_limits')
 
-    def _check_own_delay(self, now):
-        # Whatever held up the process, the arm has moved unseen: the state that waits in the
-        # queue is fresh, and its age would not tell.
+    def _check_own_delay(self, now: float) -> None:
+        # During a standstill of the process the arm moves unobserved. The state that waits in
+        # the queue is fresh, so its age does not show the standstill.
         before, self._last_look = self._last_look, now
         if not self.is_driving:
             return
@@ -221,14 +266,14 @@ class TorquePath:
         elif now - self._last_tick > timeout + MAX_MONITOR_AGE:
             self.fault(now, f'the watchdog has not run for {now - self._last_tick:.1f} s')
 
-    def is_timely(self, now):
+    def is_timely(self, now: float) -> bool:
         """
-        Tell whether the command just computed may still go out; if not, take it back and stop.
+        Tell whether the computed command may still be published; if not, withdraw it and stop.
 
         Parameters
         ----------
         now : float
-            s, right before publishing.
+            Time right before publishing, s.
 
         Returns
         -------
@@ -245,9 +290,9 @@ class TorquePath:
         )
         return False
 
-    def published(self, now):
+    def published(self, now: float) -> None:
         """
-        Note that the command has gone out.
+        Note that the command is published.
 
         Parameters
         ----------
@@ -257,9 +302,9 @@ class TorquePath:
         """
         self.output.published(now)
 
-    def monitored(self, now):
+    def monitored(self, now: float) -> None:
         """
-        Note that other publishers and controllers have been looked for, without a finding.
+        Note that a search for other publishers and controllers has found no conflict.
 
         Parameters
         ----------
@@ -269,9 +314,9 @@ class TorquePath:
         """
         self._last_monitored = now
 
-    def tick(self, now):
+    def tick(self, now: float) -> NDArray[np.float64] | None:
         """
-        Watch the age of the joint state; return the next command of a ramp or a stop.
+        Check the age of the joint state; return the next command of a ramp or a stop.
 
         Parameters
         ----------
@@ -281,6 +326,7 @@ class TorquePath:
         Returns
         -------
         numpy.ndarray, shape (m,), or None
+            N m or N.
 
         """
         age, timeout = self.buffer.age(now), self.output.settings.state_timeout
@@ -294,9 +340,9 @@ class TorquePath:
         self._last_look = self._last_tick = now
         return self.output.between(now)
 
-    def next_tick_in(self, now):
+    def next_tick_in(self, now: float) -> float:
         """
-        Return when `tick` has to be called next while the output is on.
+        Return the time until the next call of `tick` while the output is on.
 
         Parameters
         ----------
@@ -306,8 +352,7 @@ class TorquePath:
         Returns
         -------
         float
-            s: the next step of a ramp or a stop, or the moment at which the newest state
-            becomes stale.
+            s: until the next step of a ramp or a stop, or until the newest state is stale.
 
         """
         due = self.output.next_tick_in(now)
@@ -317,12 +362,12 @@ class TorquePath:
 
     # ------------------------------------------------------------------------ start and stop
 
-    def enable(self, now):
+    def enable(self, now: float) -> bool:
         """
-        Begin to send efforts; whether the arm may be driven has been found out before.
+        Start the output; the caller has checked that the arm may be driven.
 
-        The start ramp begins at the efforts in force: zero, or what `hold` or a deactivated
-        controller has left, unless the measured efforts say that it is gone.
+        The start ramp begins at the efforts in force: zero, or the last efforts before `hold` or
+        the deactivation of a controller, unless the measured efforts show that they are gone.
 
         Parameters
         ----------
@@ -332,7 +377,7 @@ class TorquePath:
         Returns
         -------
         bool
-            False if the output is on, or the process is about to end.
+            False if the output is already on, or the process is about to end.
 
         """
         if self.is_on or self.is_closed:
@@ -342,21 +387,21 @@ class TorquePath:
         self.output.start(now, self._in_force())
         return True
 
-    def disable(self, now, reason):
+    def disable(self, now: float, reason: str) -> bool:
         """
-        Stop the output, or release what a stop has left in force.
+        Stop the output, or ramp down efforts that are still in force.
 
         Parameters
         ----------
         now : float
             s.
         reason : str
-            For people.
+            Cause, as text.
 
         Returns
         -------
         bool
-            Whether there is anything to stop.
+            False if the output is off without an effort in force, or already stopping.
 
         """
         if not self.is_driving and not self.output.has_effort_in_force:
@@ -364,37 +409,37 @@ class TorquePath:
         self.output.stop(now, reason)
         return True
 
-    def fault(self, now, reason):
+    def fault(self, now: float, reason: str) -> None:
         """
-        Stop because the arm must not be driven any further; nothing happens while all is zero.
+        Stop because the arm must not be driven any further; no effect while READY or FAULT.
 
-        The last command is never held: it may be what the arm runs away with.
+        The last command is never held: it may drive a runaway.
 
         Parameters
         ----------
         now : float
             s.
         reason : str
-            For people.
+            Cause, as text.
 
         """
         if self.is_on or self.state == OutputState.HOLDING:
             self.output.stop(now, reason, is_fault=True)
 
-    def fail(self, now, reason):
-        """Stop as `fault` does, and latch FAULT also while the output is off."""
+    def fail(self, now: float, reason: str) -> None:
+        """Stop as `fault` does, and enter FAULT even if the output is off."""
         self.output.stop(now, reason, is_fault=True)
 
-    def lose_controller(self, now, reason):
+    def lose_controller(self, now: float, reason: str) -> None:
         """
-        End in FAULT because the controller no longer takes commands; what it holds is unknown.
+        End in FAULT because no controller takes commands; the efforts in force are unknown.
 
         Parameters
         ----------
         now : float
             s.
         reason : str
-            For people.
+            Cause, as text.
 
         """
         if self.is_on:
@@ -403,31 +448,31 @@ class TorquePath:
                 f'{reason}; the last efforts sent, which the hardware may hold: {left}'
             )
 
-    def close(self, now, reason, within):
+    def close(self, now: float, reason: str, within: float) -> None:
         """
-        Stop for good because the process ends; a second call hastens the stop.
+        Stop for good because the process ends; a second call shortens the stop.
 
         Parameters
         ----------
         now : float
             s.
         reason : str
-            For people.
+            Cause, as text.
         within : float
-            Longest time for the stop, s.
+            Longest duration of the stop, s.
 
         """
         self.is_closed = True
         if self.is_on or self.state == OutputState.HOLDING:
             self.output.stop(now, reason, within=within)
 
-    def restart_from_zero(self, now, reason):
-        """Begin the start ramp anew at zero, because no controller took the efforts so far."""
+    def restart_from_zero(self, now: float, reason: str) -> None:
+        """Restart the start ramp at zero, because no controller took the efforts so far."""
         if self.is_driving:
             self.output.start(now, np.zeros(len(self.output.limiter.last)), reason)
 
-    def _restart(self, now, reason):
-        # From the last command to the model's, because what was measured is no longer true.
+    def _restart(self, now: float, reason: str) -> None:
+        # A new start ramp from the last command, because the measurements are no longer valid.
         if not self.is_driving:
             return
         self._restarts = self._restarts + 1 if self.state == OutputState.STARTING else 1
@@ -436,7 +481,7 @@ class TorquePath:
         else:
             self.output.start(now, self.output.limiter.last, reason)
 
-    def _in_force(self):
+    def _in_force(self) -> NDArray[np.float64]:
         last, measured = self.output.limiter.last, self.buffer.needed_effort
         if not last.any() or len(measured) != len(last) or not np.isfinite(measured).all():
             return last

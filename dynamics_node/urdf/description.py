@@ -1,8 +1,12 @@
 """The checked robot description: frozen plain data, in SI units and URDF frames."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
+
+from ..inertia import pseudo_inertia, transform_pseudo_inertia
 
 
 @dataclass(frozen=True)
@@ -22,8 +26,24 @@ class Inertial:
     """
 
     mass: float
-    placement: np.ndarray
-    tensor: np.ndarray
+    placement: NDArray[np.float64]
+    tensor: NDArray[np.float64]
+
+    @cached_property
+    def pseudo_inertia(self) -> NDArray[np.float64]:
+        """
+        J about the link frame's origin, shape (4, 4): kg m², kg m, kg; read-only.
+
+        References
+        ----------
+        docs/mathematics.md, equations (2) to (5).
+
+        """
+        matrix = transform_pseudo_inertia(
+            pseudo_inertia(self.mass, np.zeros(3), self.tensor), self.placement
+        )
+        matrix.flags.writeable = False
+        return matrix
 
 
 @dataclass(frozen=True)
@@ -36,9 +56,11 @@ class Link:
     name : str
     inertial : Inertial or None
         None where the URDF has none.
-    has_shape, has_visual : bool
-        Whether the URDF gives it a <visual> or a <collision>, and whether a <visual>: what can
-        be seen has a mass. The shape itself is never looked at.
+    has_shape : bool
+        Whether the URDF has a <visual> or a <collision> for it: a visible link has a mass.
+        The shape itself is not read.
+    has_visual : bool
+        Whether the URDF has a <visual> for it.
 
     """
 
@@ -51,13 +73,18 @@ class Link:
 @dataclass(frozen=True)
 class Stated:
     """
-    What the URDF says about a joint, before anything is put in the place of nonsense.
+    The attributes of a joint as written in the URDF, before defaults replace unusable ones.
 
     Attributes
     ----------
-    lower, upper, effort, velocity : float
-        The attributes of <limit>; NaN where they are missing.
+    lower, upper : float
+        Position limits of <limit>, rad or m; NaN where they are missing.
+    effort : float
+        N m or N; NaN where it is missing.
+    velocity : float
+        rad/s or m/s; NaN where it is missing.
     has_axis : bool
+        Whether the URDF has an <axis>.
 
     """
 
@@ -70,7 +97,19 @@ class Stated:
 
 @dataclass(frozen=True)
 class Mimic:
-    """A joint that follows another: position = multiplier * leader + offset."""
+    """
+    A joint that follows another: position = multiplier * leader's position + offset.
+
+    Attributes
+    ----------
+    leader : str
+        Name of the other joint, which may mimic a third one.
+    multiplier : float
+        Follower per leader: 1, or m/rad and rad/m between a hinge and a slider.
+    offset : float
+        rad or m, of the follower.
+
+    """
 
     leader: str
     multiplier: float
@@ -84,8 +123,9 @@ class Joint:
 
     Attributes
     ----------
-    name, parent, child : str
-        Of the joint and of the links that it connects.
+    name : str
+    parent, child : str
+        Names of the links that it connects.
     kind : str
         'revolute', 'continuous', 'prismatic' or 'fixed'.
     placement : numpy.ndarray, shape (4, 4)
@@ -94,13 +134,17 @@ class Joint:
         Unit vector in the joint frame.
     lower, upper : float
         Position limits, rad or m; -inf and inf where there are none.
-    effort, velocity : float
-        Limits, N m or N, rad/s or m/s; NaN where the URDF states none.
-    damping, friction : float
-        Viscous (N m s/rad, N s/m) and Coulomb (N m, N); 0 where the URDF states none.
+    effort : float
+        Limit, N m or N; NaN where the URDF states none.
+    velocity : float
+        Limit, rad/s or m/s; NaN where the URDF states none.
+    damping : float
+        Viscous friction, N m s/rad or N s/m; 0 where the URDF states none.
+    friction : float
+        Coulomb friction, N m or N; 0 where the URDF states none.
     mimic : Mimic or None
     stated : Stated
-        For people who look for mistakes; dynamics does not depend on it.
+        For reports about the URDF; dynamics does not depend on it.
 
     """
 
@@ -108,8 +152,8 @@ class Joint:
     kind: str
     parent: str
     child: str
-    placement: np.ndarray
-    axis: np.ndarray
+    placement: NDArray[np.float64]
+    axis: NDArray[np.float64]
     lower: float = -np.inf
     upper: float = np.inf
     effort: float = np.nan
@@ -120,7 +164,7 @@ class Joint:
     stated: Stated = Stated()
 
     @property
-    def is_movable(self):
+    def is_movable(self) -> bool:
         """True unless the joint is fixed."""
         return self.kind != 'fixed'
 
@@ -132,21 +176,22 @@ class RobotDescription:
 
     Attributes
     ----------
-    name, root : str
-        Of the robot, and of the link that no joint moves.
+    name : str
+    root : str
+        Name of the link that is no joint's child.
     links : tuple of Link
     joints : tuple of Joint
         In the order of the URDF.
     warnings : tuple of str
-        What was accepted but looks wrong, one sentence each.
+        Accepted but suspicious values, one sentence each.
     hardware_plugins : tuple of str
-        `<ros2_control><hardware><plugin>`: which drivers the arm has.
+        Drivers of the arm, from `<ros2_control><hardware><plugin>`.
 
     """
 
     name: str
     root: str
-    links: tuple
-    joints: tuple
-    warnings: tuple = ()
-    hardware_plugins: tuple = ()
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...]
+    warnings: tuple[str, ...] = ()
+    hardware_plugins: tuple[str, ...] = ()

@@ -1,14 +1,30 @@
-"""Where the description comes from: a path or the text itself."""
+"""From a path or a text to an XML tree, within limits that hold before memory is used."""
 
 import os
 from pathlib import Path
 import re
+from typing import NoReturn
+from xml.etree import ElementTree
 from xml.parsers import expat
 
 from ..errors import quoted, RobotDescriptionError
 
+# A path, or the URDF text itself.
+Source = str | bytes | os.PathLike[str]
 
-def load_text(source):
+# Largest text, bytes.
+MAX_BYTES = 5_000_000
+# Largest number of links, and of joints.
+MAX_LINKS = 1_000
+# Largest number of '<': three times that of 1000 links of the most elaborate public robots.
+MAX_TAGS = 200_000
+# Largest number of '=', by the same measure.
+MAX_ATTRIBUTES = 100_000
+# Largest depth of nested elements.
+MAX_DEPTH = 32
+
+
+def load_text(source: Source) -> bytes:
     """
     Return the URDF text of a path or of a text.
 
@@ -33,42 +49,27 @@ def load_text(source):
     if isinstance(source, os.PathLike):
         return _read(Path(source))
     if not isinstance(source, str):
-        raise RobotDescriptionError([f'expected URDF text or a path, got {type(source).__name__}'])
+        _refuse(f'expected URDF text or a path, got {type(source).__name__}')
     if not source.strip():
-        raise RobotDescriptionError(['it is empty: expected URDF text or a path'])
+        _refuse('it is empty: expected URDF text or a path')
     if '<' in source or '\n' in source:
         return source.encode('utf-8', errors='surrogatepass')
     return _read(Path(source))
 
 
-def _read(path):
+def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, 'strerror', None) or error
-        # A launch file's folder is seldom the one that its user thinks of.
+        # A launch file often runs in another folder than its user expects.
         where = '' if path.is_absolute() else f' (looked in {Path.cwd()}; give an absolute path)'
         raise RobotDescriptionError([f"cannot read '{path}': {reason}{where}"]) from error
 
 
-MAX_BYTES = 5_000_000
-MAX_LINKS = 1_000
-# So many '<' and '=': three times what 1000 links of the most elaborate public robots have.
-MAX_TAGS = 200_000
-MAX_ATTRIBUTES = 100_000
-MAX_DEPTH = 32
-
-
-class _RefusedError(Exception):
-    """Stops the scan at the first thing that is refused."""
-
-
-def check_text(text):
+def check_text(text: bytes) -> None:
     """
-    Refuse a description that is dangerous or hopeless to parse.
-
-    Reads the text once as a stream, without building anything and without following
-    a reference of any kind.
+    Refuse a text that is too large to parse, or not UTF-8.
 
     Parameters
     ----------
@@ -78,16 +79,15 @@ def check_text(text):
     Raises
     ------
     RobotDescriptionError
-        If it is not UTF-8, not XML (with the parser's line), has a document type or an entity
-        definition, or exceeds 5 MB, 200 000 tags, 100 000 attributes, 1000 links or joints,
-        or 32 levels.
+        If it is empty, not UTF-8, declares another encoding, or exceeds 5 MB, 200 000 tags or
+        100 000 attributes.
 
     """
     if len(text) > MAX_BYTES:
         _refuse(f'it has {len(text)} bytes, at most {MAX_BYTES} are accepted')
-    for what, sign, most in (('tags', b'<', MAX_TAGS), ('attributes', b'=', MAX_ATTRIBUTES)):
-        if text.count(sign) > most:
-            _refuse(f'it has {text.count(sign)} {what}, at most {most} are accepted')
+    for counted, sign, limit in (('tags', b'<', MAX_TAGS), ('attributes', b'=', MAX_ATTRIBUTES)):
+        if text.count(sign) > limit:
+            _refuse(f'it has {text.count(sign)} {counted}, at most {limit} are accepted')
     if not text.strip():
         _refuse('it is empty: expected URDF text')
     try:
@@ -99,10 +99,35 @@ def check_text(text):
         _refuse(
             f'its encoding is {quoted(declared[1].decode())}, expected UTF-8: save it as UTF-8'
         )
+
+
+def parse(text: bytes) -> ElementTree.Element:
+    """
+    Parse a checked text; stop where it is refused.
+
+    Follows no reference of any kind. Without name spaces, as urdfdom reads it: public URDFs have
+    attributes and elements with undeclared prefixes (drake:acceleration), which dynamics does
+    not use.
+
+    Parameters
+    ----------
+    text : bytes
+        URDF text that `check_text` accepts.
+
+    Returns
+    -------
+    xml.etree.ElementTree.Element
+        The <robot> element.
+
+    Raises
+    ------
+    RobotDescriptionError
+        If it is not XML (with the parser's line), has another root element than <robot>, a
+        document type, more than 1000 links or joints, or more than 32 levels.
+
+    """
     try:
-        _Scan().run(text)
-    except _RefusedError as error:
-        _refuse(str(error))
+        return _LimitedTree().parse(text)
     except expat.ExpatError as error:
         _refuse(
             f'it is not XML: {expat.ErrorString(error.code)}, '
@@ -110,40 +135,46 @@ def check_text(text):
         )
 
 
-class _Scan:
-    """Counts depth, links and joints while the stream passes."""
+class _LimitedTree:
+    """Builds the tree; counts depth, links and joints before each element is added."""
 
-    def __init__(self):
-        self.depth = 0
-        self.counts = {'link': 0, 'joint': 0}
+    def __init__(self) -> None:
+        self._builder = ElementTree.TreeBuilder()
+        self._depth = 0
+        self._counts = {'link': 0, 'joint': 0}
 
-    def run(self, text):
+    def parse(self, text: bytes) -> ElementTree.Element:
+        # A declared encoding behind a byte order mark is ignored: `check_text` requires UTF-8.
         parser = expat.ParserCreate(encoding='utf-8')
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
+        parser.CharacterDataHandler = self._builder.data  # the names of hardware plugins
         parser.StartDoctypeDeclHandler = self._doctype
         parser.Parse(text, True)
+        return self._builder.close()
 
-    def _start(self, tag, attributes):
-        self.depth += 1
-        if self.depth == 1 and tag != 'robot':
-            raise _RefusedError(
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        self._depth += 1
+        if self._depth == 1 and tag != 'robot':
+            _refuse(
                 f'its root element is <{quoted(tag)[1:-1]}>, expected <robot>; '
                 'a xacro file must be expanded first'
             )
-        if self.depth > MAX_DEPTH:
-            raise _RefusedError(f'its elements are nested more than {MAX_DEPTH} deep')
-        if self.depth == 2 and tag in self.counts:
-            self.counts[tag] += 1
-            if self.counts[tag] > MAX_LINKS:
-                raise _RefusedError(f'it has more than {MAX_LINKS} {tag}s')
+        if self._depth > MAX_DEPTH:
+            _refuse(f'its elements are nested more than {MAX_DEPTH} deep')
+        if self._depth == 2 and tag in self._counts:
+            self._counts[tag] += 1
+            if self._counts[tag] > MAX_LINKS:
+                _refuse(f'it has more than {MAX_LINKS} {tag}s')
+        self._builder.start(tag, attributes)
 
-    def _end(self, tag):
-        self.depth -= 1
+    def _end(self, tag: str) -> None:
+        self._depth -= 1
+        self._builder.end(tag)
 
-    def _doctype(self, *_):
-        raise _RefusedError('it has a DOCTYPE, which is not accepted: remove it')
+    def _doctype(self, *_: object) -> NoReturn:
+        _refuse('it has a DOCTYPE, which is not accepted: remove it')
 
 
-def _refuse(problem):
+def _refuse(problem: str) -> NoReturn:
     raise RobotDescriptionError([problem])

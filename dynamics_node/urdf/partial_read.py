@@ -1,4 +1,4 @@
-"""What could be read of a description that may be broken."""
+"""Best-effort reading of a defective URDF."""
 
 from dataclasses import dataclass
 from xml.etree import ElementTree
@@ -8,49 +8,49 @@ from .validation import MAX_NAME, number_problems, part_problems
 
 
 @dataclass(frozen=True)
-class Examination:
+class PartialRead:
     """
-    A robot description, and why it is refused, if it is.
+    A robot description as far as it is readable, and the reasons for which it is refused.
 
     Attributes
     ----------
     description : RobotDescription
-        The whole robot, or the links and joints that could be read; then it has no root.
+        The whole robot; or its readable links and joints, then without a root.
     problems : tuple of str
-        One sentence each; empty for a robot that is taken.
+        One sentence each; empty for an accepted robot.
     is_whole : bool
         Whether links and joints are complete and one tree; their numbers may still be refused.
     unread : frozenset of str
-        Links whose <inertial> has no numbers that could be read.
+        Links whose <inertial> has no readable numbers.
 
     """
 
     description: RobotDescription
-    problems: tuple
+    problems: tuple[str, ...]
     is_whole: bool
-    unread: frozenset
+    unread: frozenset[str]
 
 
-def sound_parts(robot):
+def readable_parts(robot: ElementTree.Element) -> tuple[ElementTree.Element, frozenset[str]]:
     """
-    Keep the links and joints that can be read one by one.
+    Keep the links and joints that are readable on their own.
 
     Parameters
     ----------
     robot : xml.etree.ElementTree.Element
-        The <robot> element, with nothing in it but what dynamics reads.
+        The <robot> element, reduced to the parts that dynamics reads.
 
     Returns
     -------
-    sound : xml.etree.ElementTree.Element
-        Each name once; links whose <inertial> cannot be read are there without it.
+    readable : xml.etree.ElementTree.Element
+        Each name once; a link with an unreadable <inertial> is kept without it.
     unread : frozenset of str
         The names of these links.
 
     """
-    sound = ElementTree.Element(robot.tag, robot.attrib)
+    readable = ElementTree.Element(robot.tag, robot.attrib)
     unread = set()
-    known: dict[str, set] = {'link': set(), 'joint': set()}
+    known: dict[str, set[str]] = {'link': set(), 'joint': set()}
     for element in robot:
         name, names = element.get('name'), known[element.tag]
         if not name or name in names or len(name) > MAX_NAME or not name.isprintable():
@@ -63,13 +63,18 @@ def sound_parts(robot):
             unread.add(name)
             element = ElementTree.Element('link', element.attrib)
         names.add(name)
-        sound.append(element)
-    children: set = set()
-    for joint in sound.findall('joint'):
+        readable.append(element)
+    _remove_loose_joints(readable, known['link'])
+    return readable, frozenset(unread)
+
+
+def _remove_loose_joints(robot: ElementTree.Element, links: set[str]) -> None:
+    # Joints between unknown links, and all but the first joint of a child link.
+    children = set()
+    for joint in robot.findall('joint'):
         parent, child = (
             end.get('link') for tag in ('parent', 'child') for end in joint.findall(tag)
         )
-        if parent not in known['link'] or child not in known['link'] or child in children:
-            sound.remove(joint)
+        if parent not in links or child not in links or child in children:
+            robot.remove(joint)
         children.add(child)
-    return sound, frozenset(unread)

@@ -1,16 +1,23 @@
-"""From URDF to a checked robot description."""
+"""
+From URDF to a checked robot description.
+
+The text is parsed twice: strictly, within limits, by `input_limits`, and then, reduced to what
+dynamics needs, by yourdfpy, which returns its numbers and poses.
+
+"""
 
 import io
 import math
+from typing import Any
 from xml.etree import ElementTree
-from xml.parsers import expat
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .description import Inertial, Joint, Link, Mimic, RobotDescription, Stated
 from .inertial import inertial_findings
-from .input_limits import check_text, load_text
-from .partial_read import Examination, sound_parts
+from .input_limits import check_text, load_text, parse, Source
+from .partial_read import PartialRead, readable_parts
 from .validation import (
     is_number,
     LARGEST,
@@ -19,43 +26,25 @@ from .validation import (
     root_link,
     structure_problems,
 )
-from .yourdfpy_parser import urdf_class
 from ..errors import RobotDescriptionError
 
-# What dynamics reads. Everything else (visuals, collisions, meshes, plugins, names of other name
-# spaces) is left out before the text reaches yourdfpy, so no mesh address is ever looked at.
-_PARTS = {
+# Elements that dynamics reads. All others (visuals, collisions, meshes, plugins, other name
+# spaces) are removed before the text reaches yourdfpy, so no mesh address is ever resolved.
+_PARTS: dict[str, set[str]] = {
     'robot': {'link', 'joint'},
     'link': {'inertial'},
     'inertial': {'origin', 'mass', 'inertia'},
     'joint': {'parent', 'child', 'origin', 'axis', 'limit', 'dynamics', 'mimic'},
 }
 _ATTRIBUTES = {
-    'name',
-    'type',
-    'link',
-    'joint',
-    'xyz',
-    'rpy',
-    'value',
-    'ixx',
-    'ixy',
-    'ixz',
-    'iyy',
-    'iyz',
-    'izz',
-    'lower',
-    'upper',
-    'effort',
-    'velocity',
-    'damping',
-    'friction',
-    'multiplier',
-    'offset',
+    *('name', 'type', 'link', 'joint', 'xyz', 'rpy', 'value'),
+    *('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz'),
+    *('lower', 'upper', 'effort', 'velocity'),
+    *('damping', 'friction', 'multiplier', 'offset'),
 }
 
 
-def read_urdf(source):
+def read_urdf(source: Source) -> RobotDescription:
     """
     Read a URDF and check everything that dynamics depends on.
 
@@ -67,7 +56,7 @@ def read_urdf(source):
     Returns
     -------
     RobotDescription
-        With warnings for what was accepted but looks wrong.
+        With warnings for accepted but suspicious values.
 
     Raises
     ------
@@ -75,15 +64,15 @@ def read_urdf(source):
         With all problems at once: link or joint, attribute, expected, got.
 
     """
-    found = examine_urdf(source)
-    if found.problems:
-        raise RobotDescriptionError(found.problems)
-    return found.description
+    result = examine_urdf(source)
+    if result.problems:
+        raise RobotDescriptionError(result.problems)
+    return result.description
 
 
-def examine_urdf(source):
+def examine_urdf(source: Source) -> PartialRead:
     """
-    Read a URDF as far as that is possible, for a report to those who have to mend it.
+    Read a URDF as far as possible, for a report about it.
 
     Parameters
     ----------
@@ -92,13 +81,13 @@ def examine_urdf(source):
 
     Returns
     -------
-    Examination
-        What could be read, and why it is refused, if it is.
+    PartialRead
+        The readable parts, and the reasons for which the URDF is refused, if any.
 
     Raises
     ------
     RobotDescriptionError
-        If it is no XML, no URDF, or refused before it is parsed: there is nothing to show then.
+        If the text is not XML, not a URDF, or refused before parsing: nothing is readable.
 
     """
     robot, name = _element(source)
@@ -108,13 +97,13 @@ def examine_urdf(source):
     )
     plugins = _hardware_plugins(robot)
     robot = _needed(robot)
-    # yourdfpy asks for one, of no use to it.
+    # yourdfpy requires a name and does not use it.
     robot.set('name', 'robot')
     problems = structure_problems(robot) + number_problems(robot)
-    unread: frozenset = frozenset()
+    unread: frozenset[str] = frozenset()
     is_whole = not problems
     if problems:
-        robot, unread = sound_parts(robot)
+        robot, unread = readable_parts(robot)
     stated = _take_soft_limits(robot)
     parsed = _parse(robot)
     moved = moved_links(robot) if is_whole else {link.name for link in parsed.links}
@@ -128,17 +117,18 @@ def examine_urdf(source):
         tuple(link_warnings + joint_warnings),
         plugins,
     )
-    # Of parts, only what makes them parts: read_urdf says the rest when that is mended.
-    return Examination(
+    # Of a partial robot only the problems that make it partial: the values of its remaining
+    # parts are judged when it is whole.
+    return PartialRead(
         description, tuple(problems or link_problems + joint_problems), is_whole, unread
     )
 
 
-def _element(source):
+def _element(source: Source) -> tuple[ElementTree.Element, str]:
     # The <robot> element and the robot's name.
     text = load_text(source)
     check_text(text)
-    robot = _tree(text)
+    robot = parse(text)
     if _has_xacro(robot):
         raise RobotDescriptionError(
             [
@@ -149,27 +139,14 @@ def _element(source):
     return robot, robot.get('name') or 'robot'
 
 
-def _hardware_plugins(robot):
+def _hardware_plugins(robot: ElementTree.Element) -> tuple[str, ...]:
     # For safety alone: some drivers compensate gravity themselves.
     texts = (plugin.text or '' for plugin in robot.findall('ros2_control/hardware/plugin'))
     return tuple(dict.fromkeys(text.strip() for text in texts if text.strip()))
 
 
-def _tree(text):
-    # Without name spaces, as urdfdom reads it: public URDFs have attributes and elements of
-    # prefixes that nothing declares (drake:acceleration), which nothing here looks at. The
-    # encoding is settled; what an XML declaration says behind a byte order mark is not looked up.
-    builder = ElementTree.TreeBuilder()
-    parser = expat.ParserCreate(encoding='utf-8')
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.data  # the names of hardware plugins are text
-    parser.Parse(text, True)
-    return builder.close()
-
-
-def _has_xacro(robot):
-    # Its elements are called so by a prefix, usually this one.
+def _has_xacro(robot: ElementTree.Element) -> bool:
+    # Elements of xacro have a prefix, usually this one.
     prefixes = {'xacro'}
     for element in robot.iter():
         prefixes |= {
@@ -182,21 +159,21 @@ def _has_xacro(robot):
     )
 
 
-def _needed(element):
-    # A copy: to remove a hundred thousand elements one by one takes more than a second.
+def _needed(element: ElementTree.Element) -> ElementTree.Element:
+    # A copy: removing 100 000 elements one by one takes more than a second.
     copy = ElementTree.Element(
         element.tag, {name: value for name, value in element.items() if name in _ATTRIBUTES}
     )
-    parts = _PARTS.get(element.tag, ())
+    parts = _PARTS.get(element.tag, set())
     copy.extend([_needed(part) for part in element if part.tag in parts])
     return copy
 
 
-def _take_soft_limits(robot):
+def _take_soft_limits(robot: ElementTree.Element) -> dict[str, Stated]:
     # A URDF without usable effort or velocity limits still has dynamics: these two may be
-    # missing, 0, 'inf' or nonsense, and then they are unknown (NaN). yourdfpy would call
-    # float() on them, so they are taken out before it sees them.
-    limits = {}
+    # missing, 0 or 'inf', and are then unknown (NaN). yourdfpy would call float() on them, so
+    # they are removed first.
+    limits: dict[str, Stated] = {}
     for joint in robot.findall('joint'):
         limit = joint.find('limit')
         attributes = {} if limit is None else limit.attrib
@@ -206,28 +183,30 @@ def _take_soft_limits(robot):
         }
         for name in ('effort', 'velocity'):
             attributes.pop(name, '')
-        # yourdfpy fills in its default axis, so this has to be seen before.
-        limits[joint.get('name')] = Stated(**stated, has_axis=joint.find('axis') is not None)
+        # yourdfpy fills in a default axis, so a missing one is noted first.
+        limits[joint.attrib['name']] = Stated(**stated, has_axis=joint.find('axis') is not None)
     return limits
 
 
-def _number_or_nan(text):
+def _number_or_nan(text: str) -> float:
     return float(text) if is_number(text) else math.nan
 
 
-def _positive_or_nan(value):
+def _positive_or_nan(value: float) -> float:
     return value if value > 0.0 else math.nan
 
 
-def _parse(robot):
-    return (
-        urdf_class()
-        .load(io.BytesIO(ElementTree.tostring(robot)), build_scene_graph=False, load_meshes=False)
-        .robot
-    )
+def _parse(robot: ElementTree.Element) -> Any:
+    # Imported here: it takes about a second (trimesh), which a start without a robot saves.
+    from yourdfpy import URDF
+
+    text = io.BytesIO(ElementTree.tostring(robot))
+    return URDF.load(text, build_scene_graph=False, load_meshes=False).robot
 
 
-def _links(parsed, moved, shaped, visual):
+def _links(
+    parsed: Any, moved: set[str], shaped: set[str | None], visual: set[str | None]
+) -> tuple[list[Link], list[str], list[str]]:
     links, problems, warnings = [], [], []
     for link in parsed:
         inertial = None
@@ -237,14 +216,14 @@ def _links(parsed, moved, shaped, visual):
                 _placement(link.inertial.origin),
                 np.array(link.inertial.inertia, dtype=float),
             )
-            found = inertial_findings(link.name, inertial, link.name in moved)
-            problems += found[0]
-            warnings += found[1]
+            refused, suspicious = inertial_findings(link.name, inertial, link.name in moved)
+            problems += refused
+            warnings += suspicious
         links.append(Link(link.name, inertial, link.name in shaped, link.name in visual))
     return links, problems, warnings
 
 
-def _joints(parsed, stated):
+def _joints(parsed: Any, stated: dict[str, Stated]) -> tuple[list[Joint], list[str], list[str]]:
     joints, problems, warnings = [], [], []
     for joint in parsed:
         axis, problem, warning = _axis(joint, not stated[joint.name].has_axis)
@@ -273,7 +252,7 @@ def _joints(parsed, stated):
     return joints, problems, warnings
 
 
-def _axis(joint, is_missing):
+def _axis(joint: Any, is_missing: bool) -> tuple[NDArray[np.float64], list[str], list[str]]:
     axis = np.array(joint.axis, dtype=float)
     if joint.type == 'fixed':
         return axis, [], []
@@ -289,7 +268,7 @@ def _axis(joint, is_missing):
     return axis / length, [], []
 
 
-def _position_limits(joint):
+def _position_limits(joint: Any) -> tuple[float, float]:
     limit = joint.limit
     if limit is None or joint.type == 'continuous':
         return -math.inf, math.inf
@@ -303,9 +282,10 @@ def _position_limits(joint):
     )
 
 
-def _friction(joint):
-    # yourdfpy returns these as text; number_problems has checked it.
-    values, warnings = {}, []
+def _friction(joint: Any) -> tuple[dict[str, float], list[str]]:
+    # yourdfpy returns these as text, checked by number_problems.
+    values: dict[str, float] = {}
+    warnings = []
     for name in ('damping', 'friction'):
         text = None if joint.dynamics is None else getattr(joint.dynamics, name)
         value = 0.0 if text is None else float(text)
@@ -315,11 +295,11 @@ def _friction(joint):
     return values, warnings
 
 
-def _mimic(joint):
+def _mimic(joint: Any) -> Mimic | None:
     if joint.mimic is None or joint.type == 'fixed':
         return None
     return Mimic(joint.mimic.joint, float(joint.mimic.multiplier), float(joint.mimic.offset))
 
 
-def _placement(matrix):
+def _placement(matrix: Any) -> NDArray[np.float64]:
     return np.eye(4) if matrix is None else np.array(matrix, dtype=float)

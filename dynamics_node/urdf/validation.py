@@ -1,33 +1,37 @@
-"""Strict reading of the attributes that dynamics depends on, before any value is used."""
+"""Strict checks of a URDF before any value is used: numbers, and the tree of links and joints."""
 
 from collections import Counter
+from collections.abc import Collection, Sequence
 import math
 import re
+from xml.etree.ElementTree import Element
 
 from ..errors import quoted
 
-# What URDF writes as a number: no 'nan', no 'inf', no '1_0', no hexadecimal. No two repetitions
-# that could share the same digits: a long text would be tried in every division.
+# A number of a URDF: no 'nan', no 'inf', no '1_0', no hexadecimal. No two repetitions can match
+# the same digits, so that a long text is matched in linear time.
 _NUMBER = re.compile(r'[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?')
-# XML's blanks; Python knows others.
+# White space of XML; that of Python has more characters.
 _BLANKS = ' \t\r\n'
 
-# No robot has larger numbers, and products of a few of them are still finite.
+# Largest accepted number, in SI units: above those of all robots, and products of several such
+# numbers are finite.
 LARGEST = 1e30
 
-# What a limit may be instead, and then counts as none.
+# Accepted texts of an effort or velocity limit that is none.
 _UNLIMITED = re.compile(r'[+-]?(inf|infinity|nan|1e999)|', re.IGNORECASE)
 
+# Attribute, count of its numbers, whether it is required.
+_Attribute = tuple[str, int, bool]
 _INERTIA = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
-
-# Element → (attribute, how many numbers, required). The effort and velocity limits may also
-# be missing, 0 or infinite: a URDF without them still has dynamics.
-_LINK_NUMBERS = {
+# Element → attributes. Effort and velocity limits are checked apart: they may be missing, 0 or
+# infinite, because a URDF without them still has dynamics.
+_LINK_NUMBERS: dict[str, list[_Attribute]] = {
     'inertial/origin': [('xyz', 3, False), ('rpy', 3, False)],
     'inertial/mass': [('value', 1, True)],
     'inertial/inertia': [(name, 1, True) for name in _INERTIA],
 }
-_JOINT_NUMBERS = {
+_JOINT_NUMBERS: dict[str, list[_Attribute]] = {
     'origin': [('xyz', 3, False), ('rpy', 3, False)],
     'axis': [('xyz', 3, True)],
     'limit': [('lower', 1, False), ('upper', 1, False)],
@@ -35,18 +39,23 @@ _JOINT_NUMBERS = {
     'mimic': [('multiplier', 1, False), ('offset', 1, False)],
 }
 _INERTIAL_PARTS = ('inertial/mass', 'inertial/inertia')
-# A position limit that large is how others write none; an axis has its own bounds.
+# Elements without the bound LARGEST: huge position limits mean none; an axis has its own bounds.
 _MAY_BE_LARGER = {'limit', 'axis'}
 
+SUPPORTED_TYPES = ('revolute', 'continuous', 'prismatic', 'fixed')
+UNSUPPORTED_TYPES = ('floating', 'planar')
+# Longest name of a link or joint, characters: names are part of every message and log.
+MAX_NAME = 255
 
-def is_number(text):
+
+def is_number(text: str) -> bool:
     """
-    Tell whether a text is a finite decimal number as URDF writes it.
+    Tell whether a text is a finite decimal number.
 
     Parameters
     ----------
     text : str
-        One attribute's value; blanks around it do not matter.
+        Value of an attribute; white space around it is ignored.
 
     Returns
     -------
@@ -57,9 +66,9 @@ def is_number(text):
     return bool(_NUMBER.fullmatch(text.strip(_BLANKS))) and math.isfinite(float(text))
 
 
-def number_problems(robot):
+def number_problems(robot: Element) -> list[str]:
     """
-    List every attribute that is missing or is not the numbers it should be.
+    List every missing attribute and every attribute with wrong numbers.
 
     Parameters
     ----------
@@ -89,11 +98,11 @@ def number_problems(robot):
     return problems
 
 
-def _soft_limits(joint, where):
+def _soft_limits(joint: Element, where: str) -> list[str]:
     limit = joint.find('limit')
     given = {} if limit is None else limit.attrib
     return [
-        f'{where}: <limit> {name}: expected a number, got {_shown(given[name])}'
+        f'{where}: <limit> {name}: expected a number, got {_quoted_value(given[name])}'
         for name in ('effort', 'velocity')
         if name in given
         and not is_number(given[name])
@@ -101,8 +110,8 @@ def _soft_limits(joint, where):
     ]
 
 
-def _in_element(parent, where, table):
-    problems = []
+def _in_element(parent: Element, where: str, table: dict[str, list[_Attribute]]) -> list[str]:
+    problems: list[str] = []
     for path, attributes in table.items():
         element = parent.find(path)
         if element is None:
@@ -114,7 +123,9 @@ def _in_element(parent, where, table):
     return problems
 
 
-def _in_attribute(element, where, name, count, required):
+def _in_attribute(
+    element: Element, where: str, name: str, count: int, required: bool
+) -> list[str]:
     text = element.get(name)
     if text is None:
         return [f'{where} is missing'] if required else []
@@ -125,36 +136,30 @@ def _in_attribute(element, where, name, count, required):
         expected = f'at most {LARGEST:g}'
     else:
         return []
-    return [f'{where}: expected {expected}, got {_shown(text)}']
+    return [f'{where}: expected {expected}, got {_quoted_value(text)}']
 
 
-def _shown(text):
-    # The beginning of what xacro computes or replaces.
+def _quoted_value(text: str) -> str:
+    # The beginning of an expression or a substitution of xacro.
     is_xacro = '${' in text or '$(' in text
     return quoted(text) + ('; a xacro file must be expanded first' if is_xacro else '')
 
 
-SUPPORTED_TYPES = ('revolute', 'continuous', 'prismatic', 'fixed')
-UNSUPPORTED_TYPES = ('floating', 'planar')
-# Names stand in every message and log.
-MAX_NAME = 255
-
-
-def structure_problems(robot):
+def structure_problems(robot: Element) -> list[str]:
     """
-    List everything that keeps the links and joints from being one tree.
+    List everything that prevents the links and joints from forming one tree.
 
     Parameters
     ----------
     robot : xml.etree.ElementTree.Element
-        The <robot> element, with nothing in it but what dynamics reads.
+        The <robot> element, reduced to the parts that dynamics reads.
 
     Returns
     -------
     list of str
-        One sentence per problem; empty means that nothing is said twice, exactly one root, no
-        cycle, known names that can be printed, joint types that are supported, and mimic chains
-        that end at a movable joint.
+        One sentence per problem. Empty: each name and element once, one root, no cycle,
+        printable names of existing links, supported joint types, and mimic chains that end at a
+        movable joint.
 
     """
     links = [link.get('name') for link in robot.findall('link')]
@@ -174,8 +179,8 @@ def structure_problems(robot):
     return problems
 
 
-def part_problems(element):
-    """Return what is wrong with one <link> or <joint> by itself, whatever else there is."""
+def part_problems(element: Element) -> list[str]:
+    """Return the problems of one <link> or <joint> on its own, one sentence each."""
     problems = _repetition_problems(element)
     if element.tag == 'joint':
         ends = {end.get('link') for tag in ('parent', 'child') for end in element.findall(tag)}
@@ -188,30 +193,35 @@ def part_problems(element):
     return problems
 
 
-def root_link(robot):
-    """Return the name of the link that is no joint's child; the structure must be sound."""
-    children = {joint.find('child').get('link') for joint in robot.findall('joint')}
-    return next(
-        link.get('name') for link in robot.findall('link') if link.get('name') not in children
-    )
+def root_link(robot: Element) -> str:
+    """Return the name of the link that is no joint's child, of a robot without problems."""
+    children = {_end(joint, 'child') for joint in robot.findall('joint')}
+    names = (link.attrib['name'] for link in robot.findall('link'))
+    return next(name for name in names if name not in children)
 
 
-def moved_links(robot):
-    """Return the set of links that any movable joint carries; the structure must be sound."""
-    joint_of = {joint.find('child').get('link'): joint for joint in robot.findall('joint')}
+def moved_links(robot: Element) -> set[str]:
+    """Return the links that any movable joint carries, of a robot without problems."""
+    joint_of = {_end(joint, 'child'): joint for joint in robot.findall('joint')}
     is_moved: dict[str, bool] = {}
     for name in joint_of:
-        # Up to a joint that moves, to a link whose answer is known, or to the root.
+        # Up to a movable joint, to a link with a known answer, or to the root.
         path, link = [], name
         while link in joint_of and link not in is_moved and joint_of[link].get('type') == 'fixed':
             path.append(link)
-            link = joint_of[link].find('parent').get('link')
+            link = _end(joint_of[link], 'parent')
         answer = is_moved.get(link, link in joint_of)
         is_moved.update(dict.fromkeys([*path, link], answer))
     return {link for link, answer in is_moved.items() if answer}
 
 
-def _naming_problems(kind, names):
+def _end(joint: Element, end: str) -> str:
+    # Name of the parent or child link of a checked joint.
+    [element] = joint.findall(end)
+    return element.attrib['link']
+
+
+def _naming_problems(kind: str, names: Sequence[str | None]) -> list[str]:
     problems = [f'a <{kind}> has no name' for name in names if not name]
     counts = Counter(name for name in names if name)
     problems += [
@@ -233,8 +243,8 @@ def _naming_problems(kind, names):
     return problems
 
 
-def _repetition_problems(element):
-    # Of two, each parser may take another one.
+def _repetition_problems(element: Element) -> list[str]:
+    # Parsers disagree on which duplicate wins.
     where = f'{element.tag} {quoted(element.get("name"))}'
     problems = []
     for owner, parent in (
@@ -250,7 +260,7 @@ def _repetition_problems(element):
     return problems
 
 
-def _joint_problems(joint, links):
+def _joint_problems(joint: Element, links: Collection[str | None]) -> list[str]:
     where = f'joint {quoted(joint.get("name"))}'
     problems = []
     kind = joint.get('type')
@@ -272,10 +282,9 @@ def _joint_problems(joint, links):
     return problems
 
 
-def _tree_problems(links, joints):
+def _tree_problems(links: Sequence[str | None], joints: Sequence[Element]) -> list[str]:
     parents = [
-        (joint.get('name'), joint.find('parent').get('link'), joint.find('child').get('link'))
-        for joint in joints
+        (joint.get('name'), _end(joint, 'parent'), _end(joint, 'child')) for joint in joints
     ]
     problems = [
         f'link {quoted(name)} is the child of {count} joints, must be of one'
@@ -294,16 +303,16 @@ def _tree_problems(links, joints):
     return problems
 
 
-def _mimic_problems(joints):
+def _mimic_problems(joints: Sequence[Element]) -> list[str]:
     movable = {joint.get('name') for joint in joints if joint.get('type') != 'fixed'}
-    leader_of = {}
+    leader_of: dict[str, str] = {}
     problems = []
     for joint in joints:
         mimic = joint.find('mimic')
         if mimic is None or joint.get('type') == 'fixed':
             continue
-        name, leader = joint.get('name'), mimic.get('joint')
-        if leader not in movable:
+        name, leader = joint.attrib['name'], mimic.get('joint')
+        if leader is None or leader not in movable:
             problems.append(
                 f'joint {quoted(name)}: mimics {quoted(leader)}, which is not a movable joint'
             )
@@ -315,9 +324,9 @@ def _mimic_problems(joints):
     return problems
 
 
-def _cycle(next_of):
-    """Return the names along the first cycle, the first one repeated at the end, or []."""
-    done = set()
+def _cycle(next_of: dict[str, str]) -> list[str]:
+    # The names along the first cycle, the first one repeated at the end, or [].
+    done: set[str] = set()
     for start in next_of:
         path = []
         name = start

@@ -1,8 +1,8 @@
 """
-Drawing: what the dynamics of a robot look like, as plain shapes. No ROS, no window.
+Shapes that show a robot's masses, inertia, gravity and torques. No ROS, no window.
 
-What may change here: shapes, sizes and colors. Where things are comes from the model, and
-`markers/`, which sends them to RViz, only translates.
+Shapes, sizes and colors are decided here. Positions come from the model; `markers/` only
+translates shapes for RViz.
 
 """
 

@@ -1,4 +1,6 @@
-"""Colors: red, green, blue, opacity."""
+"""Colors: red, green, blue, opacity, each from 0 to 1."""
+
+Color = tuple[float, float, float, float]
 
 BODY = (0.98, 0.75, 0.15, 1.0)
 PAYLOAD = (0.85, 0.35, 0.95, 1.0)
@@ -8,19 +10,19 @@ PROBLEM = (1.0, 0.1, 0.1, 0.9)
 GRAVITY = (0.6, 0.85, 1.0, 1.0)
 JOINT = (0.8, 0.8, 0.85, 0.18)
 TEXT = (1.0, 1.0, 1.0, 1.0)
-# Nobody can say how much a torque is where the joint has no limit.
+# Without an effort limit there is no load to color by.
 UNLIMITED = (0.65, 0.65, 0.65, 1.0)
 OVER_THE_LIMIT = (1.0, 0.0, 0.0, 1.0)
 
 
-def of_load(load):
+def of_load(load: float) -> Color:
     """
     Return the color of a torque: green, over yellow at half the limit, to red.
 
     Parameters
     ----------
     load : float
-        Size of the torque, of its limit.
+        Magnitude of the torque relative to its limit, ≥ 0.
 
     Returns
     -------

@@ -1,72 +1,83 @@
-"""`Picture`: all that there is to see of a robot's dynamics at one state."""
+"""`Picture`: all shapes of one robot at one state."""
 
+from collections.abc import Sequence
 from itertools import chain
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import colors, scale
-from .bodies import Bodies
+from .bodies import BodyShapes
 from .shapes import ARROW, Shape, TEXT
-from .torque_arcs import Torques
+from .torque_arcs import TorqueArcs
+from ..dynamics import Payload, RobotModel
 from ..inertia import transform_pseudo_inertia
+from ..model import KinematicTree
 
 GRAVITY, PAYLOAD = 'gravity', 'payload'
-# m/s²: an arrow of gravity has its full length then.
+# The arrow of gravity has its nominal length at this acceleration, m/s².
 _EARTH = 9.81
 
 
 class Picture:
     """
-    Draws one robot again and again.
+    Draws one robot at any number of states.
 
-    Bodies are those that joints move, each with all that is fixed to it, but without the payload,
-    which is drawn as one of its own. Links fixed to the base weigh on no joint and are left out.
-    A joint that mimics another one has no effort of its own: its leader's contains it.
+    A body is a moving link with the links fixed to it; the payload is drawn as a separate body.
+    Links fixed to the base load no joint and are left out. A mimic joint has no effort of its
+    own: that of its leader contains it.
 
     """
 
-    def __init__(self, tree, joint_names):
+    def __init__(self, tree: KinematicTree, joint_names: Sequence[str]) -> None:
         """
-        Look at what stays the same.
+        Prepare all that does not depend on the state.
 
         Parameters
         ----------
         tree : KinematicTree
         joint_names : sequence of str
-            The m joints, of the tree's independent ones, whose efforts are drawn.
+            The m independent joints whose efforts are drawn.
 
         """
-        self._sizes = scale.make_sizes(tree)
-        self._bodies = Bodies(
-            _link_names(tree), list(tree.inertia), range(len(tree.inertia)), self._sizes
+        self._scale = scale.make_scale(tree)
+        self._bodies = BodyShapes(
+            _link_names(tree), list(tree.inertia), range(len(tree.inertia)), self._scale
         )
-        self._torques = Torques(tree, joint_names, self._sizes)
+        self._torques = TorqueArcs(tree, joint_names, self._scale)
         self._links = tree.links
-        self._payload = None
+        self._payload: Payload | None = None
         self._payload_body = self._body_of(None)
 
-    def shapes(self, model, q, gravity_torque, effort, limits):
+    def shapes(
+        self,
+        model: RobotModel,
+        q: NDArray[np.float64],
+        gravity_torque: NDArray[np.float64] | None,
+        effort: NDArray[np.float64],
+        limits: NDArray[np.float64],
+    ) -> list[Shape]:
         """
-        Draw one state.
+        Return the shapes of one state.
 
         Parameters
         ----------
         model : RobotModel
-            Of the same tree, with its payload and gravity.
+            Model of the same tree, with its payload and gravity.
         q : numpy.ndarray, shape (n,)
             Joint positions, rad or m.
         gravity_torque : numpy.ndarray, shape (m,), or None
             G of the joints, N m or N, finite. None draws neither torques nor efforts.
         effort : numpy.ndarray, shape (m,)
-            Another effort of the joints, N m or N; NaN where there is none.
+            Measured effort of the joints, N m or N; NaN where unknown.
         limits : numpy.ndarray, shape (m,)
-            Largest effort of the joints, N m or N; NaN where there is none.
+            Effort limits of the joints, N m or N; NaN where there is none.
 
         Returns
         -------
         list of Shape
-            In the base frame: masses and gravity, then torques. Empty where the pose of a body
-            is not finite.
+            In the base frame: masses and gravity, then torques. Empty if the pose of a body is
+            not finite.
 
         """
         poses = model.body_poses(q)
@@ -80,49 +91,50 @@ class Picture:
         return list(
             chain(
                 self._bodies.shapes(poses),
-                self._carried(model.payload).shapes(poses),
-                self._gravity(model.gravity.tolist()),
+                self._payload_shapes(model.payload).shapes(poses),
+                self._gravity(model.gravity),
                 torques,
             )
         )
 
-    def _carried(self, payload):
+    def _payload_shapes(self, payload: Payload | None) -> BodyShapes:
         if payload is not self._payload:
             self._payload, self._payload_body = payload, self._body_of(payload)
         return self._payload_body
 
-    def _body_of(self, payload):
-        frame = self._links[payload.link] if payload else None
-        if frame is None or frame.body < 0:
-            return Bodies((), (), (), self._sizes)
+    def _body_of(self, payload: Payload | None) -> BodyShapes:
+        if payload is None or self._links[payload.link].body < 0:
+            return BodyShapes((), (), (), self._scale)
+        frame = self._links[payload.link]
         J = transform_pseudo_inertia(payload.pseudo_inertia, frame.placement)
-        return Bodies(
+        return BodyShapes(
             ('payload',),
             (J,),
             (frame.body,),
-            self._sizes,
+            self._scale,
             groups=(PAYLOAD, PAYLOAD),
             color=(colors.PAYLOAD, colors.PAYLOAD_INERTIA),
         )
 
-    def _gravity(self, gravity):
-        # Beside the base, so that it is not hidden inside it.
+    def _gravity(self, gravity: NDArray[np.float64]) -> list[Shape]:
+        # Beside the base, where no body hides it.
         strength = float(np.linalg.norm(gravity))
         if strength == 0.0:
             return []
-        reach, text = self._sizes.reach, self._sizes.text
-        direction = np.array(gravity) / strength
-        length = scale.GRAVITY * reach * min(strength / _EARTH, 2.0)
+        unit_length = scale.GRAVITY * self._scale.reach
+        direction = gravity / strength
+        length = unit_length * min(strength / _EARTH, 2.0)
         beside = np.zeros(3)
-        beside[np.argmin(np.abs(direction))] = scale.GRAVITY * reach
+        beside[np.argmin(np.abs(direction))] = unit_length
         start = beside - length * direction
-        thick = 0.04 * scale.GRAVITY * reach
+        text_position = start - 1.5 * self._scale.text * direction
+        width = 0.04 * unit_length
         return [
             Shape(
                 GRAVITY,
                 0,
                 ARROW,
-                (thick, 2.5 * thick, 5.0 * thick),
+                (width, 2.5 * width, 5.0 * width),
                 colors.GRAVITY,
                 tuple(start.tolist()),
                 points=((0.0, 0.0, 0.0), tuple((length * direction).tolist())),
@@ -131,17 +143,17 @@ class Picture:
                 GRAVITY,
                 1,
                 TEXT,
-                self._sizes.text_size,
+                self._scale.text_size,
                 colors.GRAVITY,
-                tuple((start - 1.5 * text * direction).tolist()),
+                tuple(text_position.tolist()),
                 text=f'{strength:.3g} m/s^2',
             ),
         ]
 
 
-def _link_names(tree):
-    # A body is called by the link that its joint moves, the one whose frame is the body's.
-    names: dict = {}
+def _link_names(tree: KinematicTree) -> list[str]:
+    # A body takes the name of the link that its joint moves: their frames coincide.
+    names: dict[int, str] = {}
     for link, frame in tree.links.items():
         names.setdefault(frame.body, link)
     return [names[k] for k in range(len(tree.inertia))]

@@ -1,25 +1,27 @@
-"""How large things are drawn: as the robot is, so that a small one looks like a large one."""
+"""Sizes of shapes, proportional to the robot: pictures of small and large robots look alike."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..model.tree import PRISMATIC
+from ..model.tree import KinematicTree
 
-# Of the reach: the sphere of the heaviest body, the largest arc around a joint, the arrow of
-# 9.81 m/s², the height of a text, and the thinnest that a solid is drawn.
+# Relative to the reach: radius of the heaviest body's sphere, radius of the largest arc around a
+# joint, length of the arrow of 9.81 m/s², height of a text, least thickness of a solid.
 HEAVIEST, ARC, GRAVITY, TEXT, THINNEST = 0.032, 0.09, 0.2, 0.02, 5e-4
-# A joint nearer than this part of the reach shares its place with its neighbor.
-_SAME_PLACE = 0.01
-# Of the distance to the nearest neighbor: as large an arc may be. And of ARC: it is never
-# smaller.
-_ROOM, _LEAST = 0.6, 0.5
-# m: what a description says in place of "without limit".
-_FAR = 1e3
+# Relative to the reach: joints closer than this count as coincident.
+_COINCIDENT = 0.01
+# Largest radius of an arc, relative to the distance to the nearest joint.
+_ARC_PER_DISTANCE = 0.6
+# Smallest radius of an arc, relative to ARC.
+_MIN_ARC = 0.5
+# A travel this long stands in descriptions for "no limit", m.
+_UNLIMITED_TRAVEL = 1e3
 
 
 @dataclass(frozen=True)
-class Sizes:
+class Scale:
     """
     The sizes of one robot's picture.
 
@@ -28,38 +30,38 @@ class Sizes:
     reach : float
         Length of the robot, m, > 0.
     heaviest : float
-        Mass of its heaviest body, kg; 1 if none has any.
+        Mass of its heaviest body, kg; 1 for a robot without mass.
     arcs : numpy.ndarray, shape (N,)
-        Radius of the arc around every joint, m.
+        Radius of the arc around each joint, m.
 
     """
 
     reach: float
     heaviest: float
-    arcs: np.ndarray
+    arcs: NDArray[np.float64]
 
     @property
-    def sphere(self):
+    def sphere(self) -> float:
         """Radius of the sphere of the heaviest body, m."""
         return HEAVIEST * self.reach
 
     @property
-    def text(self):
+    def text(self) -> float:
         """Height of a text, m."""
         return TEXT * self.reach
 
     @property
-    def text_size(self):
-        """The size of a text as a shape has it, m."""
+    def text_size(self) -> tuple[float, float, float]:
+        """Size of a text shape, m."""
         return (0.35 * self.text, self.text, self.text)
 
     @property
-    def thinnest(self):
-        """The thinnest that a solid is drawn, m."""
+    def thinnest(self) -> float:
+        """Least thickness of a solid, m."""
         return THINNEST * self.reach
 
 
-def make_sizes(tree):
+def make_scale(tree: KinematicTree) -> Scale:
     """
     Return the sizes of a robot's picture.
 
@@ -69,17 +71,17 @@ def make_sizes(tree):
 
     Returns
     -------
-    Sizes
+    Scale
 
     """
     longest = reach(tree)
     heaviest = float(max(tree.inertia[:, 3, 3], default=0.0))
-    return Sizes(longest, heaviest if heaviest > 0.0 else 1.0, arc_radii(tree, longest))
+    return Scale(longest, heaviest if heaviest > 0.0 else 1.0, arc_radii(tree, longest))
 
 
-def reach(tree):
+def reach(tree: KinematicTree) -> float:
     """
-    Return how far the robot can be from end to end, roughly: the length of its longest chain.
+    Return the approximate reach of a robot: the length of its longest chain.
 
     Parameters
     ----------
@@ -88,7 +90,7 @@ def reach(tree):
     Returns
     -------
     float
-        m, > 0: 1 for a robot without any length.
+        m, > 0; 1 for a robot without length.
 
     """
     length = np.zeros(len(tree.parent) + 1)  # the last one is the base
@@ -105,32 +107,32 @@ def reach(tree):
     return float(longest) if 0.0 < longest < np.inf else 1.0
 
 
-def _travel(tree, k):
-    # Of a prismatic joint with limits; rails are long, and their joints are at one end.
+def _travel(tree: KinematicTree, k: int) -> float:
+    # A prismatic joint adds its travel: rails are long, with the joint frame at one end.
     low, high = tree.limits[tree.q_index[k], :2]
-    travel = high - low if tree.joint_type[k] == PRISMATIC else 0.0
-    return travel * abs(tree.multiplier[k]) if travel < _FAR else 0.0
+    travel = high - low if tree.is_prismatic[k] else 0.0
+    return travel * abs(tree.multiplier[k]) if travel < _UNLIMITED_TRAVEL else 0.0
 
 
-def arc_radii(tree, longest):
+def arc_radii(tree: KinematicTree, longest: float) -> NDArray[np.float64]:
     """
-    Return the radius of the arc around every joint: smaller where joints are close together.
+    Return the radius of the arc around each joint: smaller where joints are close together.
 
     Parameters
     ----------
     tree : KinematicTree
     longest : float
-        See `reach`, m.
+        The reach, m.
 
     Returns
     -------
     numpy.ndarray, shape (N,)
-        m, of the N bodies' joints.
+        m, for the joint of each of the N bodies.
 
     """
     room = np.full(len(tree.parent), np.inf)
     for k, parent in enumerate(tree.parent):
         distance = np.linalg.norm(tree.joint_placement[k, :3, 3])
-        if parent >= 0 and distance > _SAME_PLACE * longest:
+        if parent >= 0 and distance > _COINCIDENT * longest:
             room[[k, parent]] = np.minimum(room[[k, parent]], distance)
-    return np.clip(_ROOM * room, _LEAST * ARC * longest, ARC * longest)
+    return np.clip(_ARC_PER_DISTANCE * room, _MIN_ARC * ARC * longest, ARC * longest)

@@ -2,7 +2,7 @@
 # Where ROS 2 comes from. Sourced by setup.sh, after release.sh.
 
 known_releases=(jazzy kilted lyrical rolling)
-# Those that PyPI has wheels of: requirements/ros-NAME.in.
+# Those that PyPI has wheels of: the groups ros-NAME of pyproject.toml.
 wheel_releases=(jazzy kilted)
 
 # is_one_of WORD WORDS...

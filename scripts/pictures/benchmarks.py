@@ -5,8 +5,8 @@ import re
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-OURS = 'dynamics_node'
-# One has no machine code of its own here, the other takes seconds for what others take µs for.
+DYNAMICS_NODE = 'dynamics_node'
+# Slower kernels of this library, and a library in pure Python.
 LEFT_OUT = ('general kernel', 'textbook formulas', 'roboticstoolbox')
 UNITS = {'ns': 1e-3, 'µs': 1.0, 'ms': 1e3, 's': 1e6}
 COLORS = ('#1f4e9e', '#e08e1b', '#2e9e6b')
@@ -27,9 +27,9 @@ def read(page):
     times : dict of str to list of float
         Library → µs for D, C and G of one state, one for each robot.
     complete : set of str
-        Libraries that give all of D, C and G; the others give C q̇ instead of C.
+        Libraries with all of D, C and G; the others give C q̇ instead of C.
     machine : str
-        On which they were measured.
+        CPU of the measurement.
 
     """
     section = page.split('### D, C and G\n')[1].split('\n###')[0]
@@ -56,7 +56,7 @@ def draw(page, path):
     Parameters
     ----------
     page : str
-        As for `read`.
+        docs/benchmarks.md.
     path : Path
         PNG file.
 
@@ -94,7 +94,7 @@ def draw(page, path):
         fontsize=10,
     )
     for label in axis.get_yticklabels():
-        label.set_fontweight('bold' if label.get_text().startswith(OURS) else 'normal')
+        label.set_fontweight('bold' if label.get_text().startswith(DYNAMICS_NODE) else 'normal')
     axis.set_xscale('log')
     axis.set_xlim(0.25, 70.0)
     axis.set_xticks([0.3, 1.0, 3.0, 10.0, 30.0], ['0.3', '1', '3', '10', '30'])

@@ -1,4 +1,4 @@
-"""docs/floating.png and docs/floating.webp: the demo's own run, rendered and plotted."""
+"""docs/floating.png and docs/floating.webp: a run of the demo, rendered and plotted."""
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -26,8 +26,8 @@ PHASE_COLORS = {
 LINE_COLORS = ['#1f4e9e', '#d1495b', '#2e9e6b', '#e08e1b', '#7a4fb5', '#2aa7b8', '#8c5a3c']
 GHOSTS = 4
 MOVIE_SIZE, MOVIE_RATE = (560, 400), 12  # pixels, pictures per second
-# Shown so many times faster: nothing happens while the arm is held.
-HASTE = {'held by the node': 5.0, 'back to the start': 2.0, 'held there': 1.5}
+# Speed of phases in the movie: long ones are shortened.
+SPEED = {'held by the node': 5.0, 'back to the start': 2.0, 'held there': 1.5}
 MOVIE_WORDS = {
     'falls, node off': 'output off: it falls',
     'back to the start': 'driven back',
@@ -45,9 +45,9 @@ def draw(outcome, arm, robot, path):
     Parameters
     ----------
     outcome : Outcome
-        Of the demo.
+        Result of the demo.
     arm : MujocoArm
-        Which moved.
+        The arm of the demo.
     robot : Path
         Its URDF.
     path : Path
@@ -81,7 +81,7 @@ def draw(outcome, arm, robot, path):
     renderer.close()
     _plot(figure.add_subplot(grid[1, :]), outcome)
     figure.savefig(path)
-    # 128 colors are enough, and a third of the file.
+    # 128 colors: a third of the file size.
     with Image.open(path) as picture:
         picture.convert('RGB').quantize(
             128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE
@@ -90,12 +90,12 @@ def draw(outcome, arm, robot, path):
 
 def film(outcome, arm, robot, path):
     """
-    Write the same run as a moving picture.
+    Write the same run as a movie.
 
     Parameters
     ----------
     outcome, arm, robot
-        As for `draw`.
+        See `draw`.
     path : Path
         WebP file.
 
@@ -107,7 +107,7 @@ def film(outcome, arm, robot, path):
     for phase in outcome.recording.phases:
         if phase.name not in MOVIE_WORDS:
             continue
-        step = HASTE.get(phase.name, 1.0) / MOVIE_RATE
+        step = SPEED.get(phase.name, 1.0) / MOVIE_RATE
         for time in np.arange(phase.start, phase.end, step):
             picture = np.empty((MOVIE_SIZE[1], MOVIE_SIZE[0], 3))
             color = PHASE_COLORS[phase.name]
@@ -130,7 +130,7 @@ def film(outcome, arm, robot, path):
 
 
 def _panels(outcome):
-    """Return title, color, positions on the way and last position of the four panels."""
+    """Return title, color, intermediate and last positions of the four panels."""
     fall, push = (_phase(outcome, name) for name in ('falls, node off', 'pushed'))
     watched = _phase(outcome, 'held there')
     return [
@@ -157,7 +157,7 @@ def _panels(outcome):
 
 
 def _plot(axis, outcome):
-    """Draw how far every joint is from its start, over the phases."""
+    """Draw the joint displacements over the phases."""
     recording = outcome.recording
     start = recording.phases[0].start - 0.2
     times = recording.times() - start
@@ -206,7 +206,7 @@ def _plot(axis, outcome):
 
 
 def _small(degrees):
-    """Return a small angle; nobody believes a plain zero."""
+    """Return a small angle; a rounded zero would look like a missing value."""
     return f'{degrees:.2f}{DEGREE}' if degrees >= 0.01 else f'< 0.01{DEGREE}'
 
 
@@ -222,7 +222,7 @@ def _at(outcome, time):
 
 
 def _on_the_way(outcome, phase):
-    """Return positions from the start of a motion to its end, evenly in the way of the joints."""
+    """Return positions of a motion at equal distances."""
     recording = outcome.recording
     times = recording.times()
     part = recording.positions()[(times >= phase.start) & (times <= phase.end)]
@@ -232,5 +232,5 @@ def _on_the_way(outcome, phase):
 
 
 def _all_joints(arm, driven):
-    """Return the position of every joint by name, also of those that mimic."""
+    """Return the position of each joint by name, mimic joints included."""
     return dict(zip(arm.names, arm.mimic_matrix @ driven + arm.mimic_offset))

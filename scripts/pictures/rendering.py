@@ -1,26 +1,26 @@
-"""An arm as MuJoCo renders it offscreen, cut out of its background."""
+"""Offscreen pictures of an arm by MuJoCo, with a transparent background."""
 
 import os
 from pathlib import Path
 
-# Before mujoco is imported: it chooses its OpenGL when it is.
+# Before the import of mujoco, which chooses its OpenGL.
 os.environ.setdefault('MUJOCO_GL', 'egl')
 
 from dynamics_node.demo.robot_text import mujoco_text
 import mujoco
 import numpy as np
 
-# Rendered so much larger and averaged: the cut-out has smooth edges.
+# Factor of the rendered size, averaged for smooth edges.
 OVERSAMPLING = 3
-PLATE_RADIUS, PLATE_HEIGHT = 0.16, 0.03  # m, what the arm is bolted to
+PLATE_RADIUS, PLATE_HEIGHT = 0.16, 0.03  # m, of the base plate
 
 
 class NoOpenGLError(RuntimeError):
-    """Nothing here can render offscreen; the message says what to install."""
+    """No offscreen OpenGL; the message names the package to install."""
 
 
 class ArmRenderer:
-    """Renders a robot at any position from one camera, as RGBA with a clear background."""
+    """Renders a robot from one camera, as RGBA with a transparent background."""
 
     def __init__(self, path, width, height, lookat, distance, azimuth=90.0, elevation=-12.0):
         """
@@ -31,13 +31,13 @@ class ArmRenderer:
         path : Path
             URDF file; its visual shapes are drawn, meshes are not.
         width, height : int
-            Of the pictures, in pixels.
+            Size of the pictures, pixels.
         lookat : sequence of 3 floats
-            What the camera looks at, m, in the frame of the root link.
+            Center of the view, m, in the frame of the root link.
         distance : float
-            Of the camera from there, m.
+            Distance of the camera from there, m.
         azimuth, elevation : float
-            Where it stands, degrees.
+            Direction of the camera, degrees.
 
         Raises
         ------
@@ -46,7 +46,7 @@ class ArmRenderer:
 
         """
         spec = mujoco.MjSpec.from_string(mujoco_text(Path(path).read_text(encoding='utf-8')))
-        _furnish(spec)
+        _add_scenery(spec)
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self._camera = mujoco.MjvCamera()
@@ -56,7 +56,7 @@ class ArmRenderer:
         self.model.vis.global_.offheight, self.model.vis.global_.offwidth = size
         try:
             self._renderer = mujoco.Renderer(self.model, *size)
-        except Exception as error:  # whatever the OpenGL of this machine raises
+        except Exception as error:  # depends on the OpenGL implementation
             raise NoOpenGLError(
                 'MuJoCo cannot render here with MUJOCO_GL='
                 f'{os.environ["MUJOCO_GL"]} ({error}); install libegl1 (then '
@@ -64,7 +64,7 @@ class ArmRenderer:
             ) from error
 
     def close(self):
-        """Give the OpenGL context back."""
+        """Free the OpenGL context."""
         self._renderer.close()
 
     def frame(self, position):
@@ -74,12 +74,12 @@ class ArmRenderer:
         Parameters
         ----------
         position : dict of str to float
-            Joint name → position, rad or m, of every movable joint.
+            Position of each movable joint, rad or m.
 
         Returns
         -------
         ndarray, shape (height, width, 4)
-            RGBA, 0 to 1; alpha is the part of a pixel that the arm covers.
+            RGBA, 0 to 1; alpha is the share of a pixel covered by the arm.
 
         """
         for name, value in position.items():
@@ -92,7 +92,7 @@ class ArmRenderer:
         covered = (self._renderer.render()[:, :, 0] >= 0).astype(float)[:, :, None]
         self._renderer.disable_segmentation_rendering()
         alpha = _averaged(covered)
-        # The color of the covered part alone, so that no edge of the background is left.
+        # The color of the covered part alone: no fringe of the background.
         return np.concatenate((_averaged(color * covered) / np.maximum(alpha, 1e-9), alpha), 2)
 
 
@@ -105,7 +105,7 @@ def over(picture, frame, opacity=1.0):
     picture : ndarray, shape (height, width, 3)
         RGB, 0 to 1.
     frame : ndarray, shape (height, width, 4)
-        As `ArmRenderer.frame` returns it.
+        From `ArmRenderer.frame`.
     opacity : float
 
     Returns
@@ -124,8 +124,8 @@ def _averaged(picture):
     return picture.reshape(height // k, k, width // k, k, channels).mean((1, 3))
 
 
-def _furnish(spec):
-    """Add lights, and a plate on which the arm stands."""
+def _add_scenery(spec):
+    """Add lights and a base plate."""
     spec.visual.headlight.ambient = [0.45, 0.45, 0.45]
     spec.visual.headlight.diffuse = [0.25, 0.25, 0.25]
     spec.visual.headlight.specular = [0.1, 0.1, 0.1]

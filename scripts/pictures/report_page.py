@@ -1,4 +1,4 @@
-"""docs/report_page.png: the top of the model report's page, in a real browser."""
+"""docs/report_page.png: a browser's screenshot of the top of the model report's page."""
 
 from pathlib import Path
 import subprocess
@@ -10,7 +10,7 @@ from PIL import Image
 from support.browser import browser
 
 SIZE = 1280, 612  # pixels: down to the end of the finding
-DRAWN_AFTER = 3.0  # s; the 3D view appears when it is ready
+DRAWING_TIME = 3.0  # s, of the 3D view
 # The forearm in tonnes instead of kilograms: mass and inertia.
 MISTAKES = (
     ('<mass value="1.40208" />', '<mass value="0.00140208" />'),
@@ -27,7 +27,7 @@ def draw(robot, path):
     Parameters
     ----------
     robot : Path
-        arm7: the first text of each mistake is there once; the report sees the second.
+        arm7: contains the first text of each mistake once; it is replaced by the second.
     path : Path
         PNG file.
 
@@ -50,7 +50,7 @@ def draw(robot, path):
         with browser() as tab:
             tab.open(page, *SIZE)
             tab.settle()
-            time.sleep(DRAWN_AFTER)
+            time.sleep(DRAWING_TIME)
             tab.screenshot(path)
     with Image.open(path) as picture:
         picture.convert('RGB').quantize(128, dither=Image.Dither.NONE).save(path, optimize=True)

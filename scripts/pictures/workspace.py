@@ -1,4 +1,4 @@
-"""docs/workspace.png: what gravity takes of arm7's joints, and what is left for a payload."""
+"""docs/workspace.png: gravity load and largest payload over the workspace of arm7."""
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -12,7 +12,7 @@ PITCHES = ('shoulder_pitch', 'elbow_pitch', 'wrist_pitch')
 
 def worst_by_place(robot):
     """
-    Return what the worst posture with the tool at a place leaves.
+    Return gravity load and payload of the worst posture with the tool in each cell.
 
     All postures in the vertical plane in front of the robot: the three pitch joints on a grid
     over their ranges, the others at zero.
@@ -27,7 +27,7 @@ def worst_by_place(robot):
     reach, height : ndarray
         Edges of the cells, m.
     share : ndarray, shape (heights, reaches)
-        Largest gravity torque as a part of its effort limit, without payload; NaN: out of reach.
+        Largest gravity torque relative to its effort limit, without payload; NaN: out of reach.
     payload : ndarray, shape (heights, reaches)
         Largest mass at the tool, kg; NaN: out of reach.
 
@@ -70,8 +70,8 @@ def tool_places(robot, q):
     """
     Return reach and height of the tool, each of shape (N,), m.
 
-    From the potential energy of a kilogram there, less that without it: V = m g z for gravity
-    along z, and the same for gravity along x.
+    From the potential energy of one kilogram there, V = m g z for gravity along z, and the same
+    for gravity along x.
 
     """
 
@@ -111,7 +111,7 @@ def draw(robot, path):
         ),
         (right, payload, 'YlGnBu', (5, 6, 7, 8, 9), 'kg', 'and leaves for a payload'),
     ):
-        # At the top everything stands on the bearings: no colors for 60 kg there.
+        # No colors for the 60 kg near the top, where the bearings carry the load.
         mesh = axis.pcolormesh(
             reach,
             height,

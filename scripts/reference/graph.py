@@ -2,11 +2,17 @@
 Topics and services of the node, each with a sentence for users.
 
 A test compares them with the graph of a running node and fails on a missing or superfluous entry.
-Add one entry for a new topic or service; then run scripts/write_reference.py.
+Add one entry for a new topic; services come from their docstrings. Then run
+scripts/write_reference.py.
 
 """
 
 from dataclasses import dataclass
+import inspect
+
+from dynamics_node.ros.services.payload_gravity_services import PayloadGravityServices
+from dynamics_node.ros.services.state_services import StateServices
+from dynamics_node.ros.services.trajectory_services import TrajectoryServices
 
 
 @dataclass(frozen=True)
@@ -71,50 +77,20 @@ PUBLISHED = (
     ),
 )
 
+
+def _entry(name, kind, doc):
+    # The first line of the docstring is a sentence: "Answer ...".
+    words = ' '.join(inspect.cleandoc(doc).split('\n\n')[0].split())
+    words = words.removeprefix('Answer ').removesuffix('.')
+    package = kind.__module__.partition('.')[0]
+    return Entry(f'~/{name}', f'{package}/srv/{kind.__name__}', words[0].upper() + words[1:])
+
+
 SERVICES = (
-    Entry('~/get_mass_matrix', 'dynamics_interfaces/srv/GetMassMatrix', 'D'),
-    Entry('~/get_coriolis_matrix', 'dynamics_interfaces/srv/GetCoriolisMatrix', 'C and C q̇'),
-    Entry('~/get_gravity_torque', 'dynamics_interfaces/srv/GetGravityTorque', 'G'),
-    Entry(
-        '~/get_dynamics',
-        'dynamics_interfaces/srv/GetDynamics',
-        'D, C, C q̇, G, kinetic and potential energy',
-    ),
-    Entry(
-        '~/inverse_dynamics',
-        'dynamics_interfaces/srv/InverseDynamics',
-        'The efforts of a motion, with or without friction and gravity',
-    ),
-    Entry(
-        '~/forward_dynamics',
-        'dynamics_interfaces/srv/ForwardDynamics',
-        'The accelerations caused by efforts; joints outside `joints` are held',
-    ),
-    Entry(
-        '~/get_jacobian',
-        'dynamics_interfaces/srv/GetJacobian',
-        'J of a point of any link, 6 x n, linear rows first, base frame; and the pose',
-    ),
-    Entry(
-        '~/compute_trajectory_effort',
-        'dynamics_interfaces/srv/ComputeTrajectoryEffort',
-        'The same trajectory with `effort` in every point; points and joints above their limit',
-    ),
-    Entry(
-        '~/get_max_payload',
-        'dynamics_interfaces/srv/GetMaxPayload',
-        'The largest mass at a point of a link, at a state or over a trajectory, and the limiting '
-        'joint',
-    ),
-    Entry(
-        '~/set_payload',
-        'dynamics_interfaces/srv/SetPayload',
-        'The payload in force; m = 0 removes it',
-    ),
-    Entry(
-        '~/set_gravity',
-        'dynamics_interfaces/srv/SetGravity',
-        'Gravity in force; it points to the earth, in the frame of any link',
+    *(
+        _entry(*service)
+        for group in (StateServices, TrajectoryServices, PayloadGravityServices)
+        for service in group.declared()
     ),
     Entry('~/enable', 'std_srvs/srv/SetBool', 'Accepted, or every reason for the refusal'),
 )

@@ -1,1 +1,1 @@
-"""docs/tutorial.md as a session: its commands run, and what they print stands on the page."""
+"""docs/tutorial.md as a session: its commands run, and their output is put into the page."""

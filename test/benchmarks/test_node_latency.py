@@ -1,4 +1,4 @@
-"""The instrument measures what it says, with the real node and the real relay."""
+"""A short run of the latency measurement, with node and relay."""
 
 import contextlib
 import math
@@ -9,12 +9,12 @@ import subprocess
 import sys
 
 ROOT = Path(__file__).parents[2]
-# In a process of its own: it joins ROS by itself.
+# A separate process: it initializes rclpy.
 CODE = """
 from benchmarks.node_latency import measure_all, table
 rows = measure_all(rates=(50,), slices=2, starts=1, bursts=1, trajectories=1)
 for row in rows:
-    print(row.name, row.ours, row.relay, row.ratio, sep=';')
+    print(row.name, row.node, row.relay, row.ratio, sep=';')
 assert len(table(rows).splitlines()) == len(rows) + 2
 """
 
@@ -31,7 +31,7 @@ def test_every_row_is_measured_and_states_are_answered():
     try:
         output, problem = driver.communicate(timeout=280.0)
     finally:
-        # The processes that it has started too, if it could not end them.
+        # With the processes that it has started.
         with contextlib.suppress(ProcessLookupError):
             os.killpg(driver.pid, signal.SIGKILL)
     assert driver.returncode == 0, problem

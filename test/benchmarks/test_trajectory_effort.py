@@ -1,4 +1,4 @@
-"""A small round of the real thing: every way is timed, and Pinocchio's efforts are ours."""
+"""A short run of the trajectory measurement."""
 
 from importlib import import_module
 from pathlib import Path
@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture
 def bench(monkeypatch):
-    # Only for the import: the root holds folders, such as launch, that must not hide packages.
+    # Only for the import: folders of the root, such as launch, would hide packages.
     with monkeypatch.context() as patch:
         patch.syspath_prepend(str(ROOT))
         return import_module('benchmarks.trajectory_effort')

@@ -1,5 +1,6 @@
-"""Machine code on disk: found again, never trusted blindly."""
+"""Machine code on disk: trusted only if complete, in place and private."""
 
+from dataclasses import replace
 import os
 import stat
 
@@ -19,7 +20,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path / 'cache'
 
 
-def test_what_was_saved_is_loaded(folder):
+def test_saved_code_is_loaded(folder):
     assert disk_cache.load('name') is None
     assert disk_cache.save('name', CODE)
     assert disk_cache.load('name') == CODE
@@ -47,7 +48,7 @@ def test_a_damaged_file_counts_as_missing(folder, damage):
     assert disk_cache.load('name') is None
 
 
-def test_a_file_that_others_may_write_counts_as_missing(folder):
+def test_a_file_writable_by_other_users_counts_as_missing(folder):
     disk_cache.save('name', CODE)
     (folder / 'name').chmod(0o666)
     assert disk_cache.load('name') is None
@@ -59,7 +60,7 @@ def test_a_file_under_another_name_counts_as_missing(folder):
     assert disk_cache.load('other') is None
 
 
-def test_what_is_not_a_plain_file_counts_as_missing(folder):
+def test_links_pipes_and_folders_count_as_missing(folder):
     disk_cache.save('name', CODE)
     (folder / 'link').symlink_to(folder / 'name')
     os.mkfifo(folder / 'pipe')
@@ -69,14 +70,14 @@ def test_what_is_not_a_plain_file_counts_as_missing(folder):
     assert not [path for path in folder.iterdir() if path.name.startswith('new-')]
 
 
-def test_a_folder_that_others_may_write_counts_as_empty(folder):
+def test_a_folder_writable_by_other_users_counts_as_empty(folder):
     disk_cache.save('name', CODE)
     folder.chmod(0o777)
     assert disk_cache.load('name') is None
 
 
-def test_in_a_folder_that_others_may_write_nothing_changes(folder, monkeypatch):
-    monkeypatch.setattr(disk_cache, '_MOST_FILES', 1)
+def test_a_folder_writable_by_other_users_is_not_changed(folder, monkeypatch):
+    monkeypatch.setattr(disk_cache, '_MAX_FILES', 1)
     folder.mkdir()
     folder.chmod(0o777)
     for number in range(3):
@@ -85,14 +86,14 @@ def test_in_a_folder_that_others_may_write_nothing_changes(folder, monkeypatch):
     assert len(list(folder.iterdir())) == 3
 
 
-def test_a_link_of_ones_own_to_another_folder_is_followed(folder, tmp_path):
+def test_a_link_set_by_the_user_is_followed(folder, tmp_path):
     (tmp_path / 'disk').mkdir(mode=0o700)
     folder.symlink_to(tmp_path / 'disk')
     assert disk_cache.save('name', CODE)
     assert disk_cache.load('name') == CODE
 
 
-def test_a_link_that_somebody_else_has_set_is_not_followed(folder, tmp_path, monkeypatch):
+def test_a_link_set_by_another_user_is_not_followed(folder, tmp_path, monkeypatch):
     (tmp_path / 'disk').mkdir(mode=0o700)
     folder.symlink_to(tmp_path / 'disk')
     disk_cache.save('name', CODE)
@@ -105,7 +106,7 @@ def test_a_link_that_somebody_else_has_set_is_not_followed(folder, tmp_path, mon
 
 
 def test_the_oldest_files_go(folder, monkeypatch):
-    monkeypatch.setattr(disk_cache, '_MOST_FILES', 3)
+    monkeypatch.setattr(disk_cache, '_MAX_FILES', 3)
     names = [f'{number:064x}' for number in range(5)]
     for number, name in enumerate(names):
         disk_cache.save(name, CODE)
@@ -113,8 +114,8 @@ def test_the_oldest_files_go(folder, monkeypatch):
     assert sorted(path.name for path in folder.iterdir()) == names[2:]
 
 
-def test_files_that_are_not_ours_stay(folder, monkeypatch):
-    monkeypatch.setattr(disk_cache, '_MOST_FILES', 1)
+def test_files_with_other_names_are_kept(folder, monkeypatch):
+    monkeypatch.setattr(disk_cache, '_MAX_FILES', 1)
     folder.mkdir(mode=0o700)
     for name in ('thesis.tex', 'photo.jpg', 'name'):
         (folder / name).write_text('mine')
@@ -140,14 +141,14 @@ def test_without_a_home_there_is_no_place(monkeypatch):
     assert not disk_cache.save('name', CODE)
 
 
-def test_a_place_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):
+def test_an_unwritable_folder_is_not_an_error(tmp_path, monkeypatch):
     (tmp_path / 'file').write_text('')
     monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(tmp_path / 'file' / 'cache'))
     assert not disk_cache.save('name', CODE)
     assert disk_cache.load('name') is None
 
 
-def test_the_users_cache_folder_is_the_usual_one(monkeypatch):
+def test_the_folder_follows_the_xdg_convention(monkeypatch):
     monkeypatch.delenv('DYNAMICS_NODE_CACHE_DIR')
     monkeypatch.setenv('XDG_CACHE_HOME', '/somewhere')
     assert str(disk_cache.folder()) == '/somewhere/dynamics_node'
@@ -156,26 +157,27 @@ def test_the_users_cache_folder_is_the_usual_one(monkeypatch):
     assert str(disk_cache.folder()) == '/home/me/.cache/dynamics_node'
 
 
-def test_the_key_knows_the_robot_but_not_gravity():
+def test_the_key_depends_on_the_robot_but_not_on_gravity():
     arm, pendulum = (RobotModel.from_urdf(path).tree for path in (ARM7, PENDULUM))
-    key = disk_cache.key(*pack(arm, (0.0, 0.0, -9.81)))
-    assert key == disk_cache.key(*pack(arm, (1.0, 2.0, 3.0)))
-    assert key != disk_cache.key(*pack(pendulum, (0.0, 0.0, -9.81)))
+    key = disk_cache.key(pack(arm, (0.0, 0.0, -9.81)))
+    assert key == disk_cache.key(pack(arm, (1.0, 2.0, 3.0)))
+    assert key != disk_cache.key(pack(pendulum, (0.0, 0.0, -9.81)))
     heavier = RobotModel.from_urdf(ARM7.read_text().replace('mass value="', 'mass value="1')).tree
-    assert key != disk_cache.key(*pack(heavier, (0.0, 0.0, -9.81)))
+    assert key != disk_cache.key(pack(heavier, (0.0, 0.0, -9.81)))
 
 
-def test_the_key_for_any_inertia_knows_neither_inertia_nor_rotors_but_all_else():
+def test_the_key_of_the_payload_variant_leaves_out_all_inertia():
     arm = RobotModel.from_urdf(ARM7)
-    structure, numbers = pack(arm.tree, arm.gravity)
-    key = disk_cache.key(structure, numbers, True)
-    assert key != disk_cache.key(structure, numbers)
+    own = pack(arm.tree, arm.gravity)
+    variant = own.with_payload_code()
+    key = disk_cache.key(variant)
+    assert key != disk_cache.key(own)
     for column in range(recursive.WIDTH):
-        other = numbers.copy()
+        other = own.numbers.copy()
         other[3, column] += 1.0
         is_input = recursive.INERTIA <= column < recursive.MULTIPLIER or column == recursive.ROTOR
-        assert (disk_cache.key(structure, other, True) == key) == is_input
-        assert disk_cache.key(structure, other) != disk_cache.key(structure, numbers)
-    tree = structure.copy()
-    tree[-1] += 1
-    assert disk_cache.key(tree, numbers, True) != key
+        assert (disk_cache.key(replace(variant, numbers=other)) == key) == is_input
+        assert disk_cache.key(replace(own, numbers=other)) != disk_cache.key(own)
+    structure = own.structure.copy()
+    structure[-1] += 1
+    assert disk_cache.key(replace(variant, structure=structure)) != key

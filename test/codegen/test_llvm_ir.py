@@ -3,7 +3,7 @@
 import ctypes
 
 from dynamics_node import RobotModel
-from dynamics_node.codegen import compile, llvm_ir, trace
+from dynamics_node.codegen import llvm_ir, llvm_target, trace
 from dynamics_node.codegen.llvm_ir import declarations
 from dynamics_node.kernels.packing import pack
 import numpy as np
@@ -19,21 +19,21 @@ def model(request):
     return RobotModel.from_urdf(random_urdf(request.param, request.param, with_mimic=False))
 
 
-@pytest.mark.parametrize('lanes', sorted({2, 4, compile.lanes()}))
-def test_a_batch_of_any_size_is_the_general_kernels(model, lanes):
+@pytest.mark.parametrize('lanes', sorted({2, 4, llvm_target.lanes()}))
+def test_a_batch_of_any_size_agrees_with_the_general_kernel(model, lanes):
     packed = pack(model.tree, model.gravity)
-    quantity = trace.dynamics(*packed)
+    quantity = trace.dynamics(packed)
     text = '\n'.join([*declarations(lanes), llvm_ir.batch_function(quantity, lanes)])
-    loaded = compile.LoadedCode([compile.compile_code(text)], ['dynamics_batch'])
+    addresses = llvm_target.load([llvm_target.compile_code(text)], ['dynamics_batch'])
     function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 6, ctypes.c_int64)(
-        loaded.address('dynamics_batch')
+        addresses['dynamics_batch']
     )
     n, rng = len(model.joint_names), np.random.default_rng(2)
     for count in (lanes, lanes + 1, 2 * lanes - 1, 2 * lanes, 5 * lanes + 3):
         q, qd = rng.uniform(-3.0, 3.0, (2, count, n))
-        # A state more than asked for: nobody may write there.
+        # One more state than requested, which must not be written.
         outputs = [np.full((count + 1, *shape), 7.0) for shape in ((n, n), (n, n), (n,))]
-        arrays = [q, qd, packed[1], *outputs]
+        arrays = [q, qd, packed.numbers, *outputs]
         function(*(array.ctypes.data for array in arrays), count)
         for mine, theirs in zip(outputs, model._evaluation.dynamics(q, qd), strict=True):
             np.testing.assert_allclose(

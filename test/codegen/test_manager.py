@@ -1,4 +1,4 @@
-"""Machine code takes over without anybody waiting, and can be done without."""
+"""Machine code: when it is compiled, shared, installed, and done without."""
 
 from concurrent.futures import ThreadPoolExecutor
 import copy
@@ -14,7 +14,7 @@ import threading
 import time
 import weakref
 
-from dynamics_node import codegen, RobotModel, SingularMassMatrixError
+from dynamics_node import RobotModel, SingularMassMatrixError
 from dynamics_node.codegen import compile, worker
 from dynamics_node.codegen.manager import Specialization
 from dynamics_node.dynamics.batch import Evaluation
@@ -36,11 +36,11 @@ SMALL = random_urdf(12, joints=2)
 
 @pytest.fixture(scope='module')
 def compiled(tmp_path_factory):
-    """Where the machine code of SMALL lies, both its own and that for payloads."""
+    """Folder with the machine code of SMALL and its payload variant."""
     place = tmp_path_factory.mktemp('compiled')
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv('DYNAMICS_NODE_CACHE_DIR', str(place))
-        assert RobotModel.from_urdf(SMALL).specialize(loads=True)
+        assert RobotModel.from_urdf(SMALL).specialize(with_payload_code=True)
     return place
 
 
@@ -61,7 +61,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_a_model_that_is_used_often_gets_machine_code_by_itself():
+def test_frequent_use_starts_the_compiler():
     model = RobotModel.from_urdf(PENDULUM)
     q = np.array([0.3])
     expected = model.gravity_torque(q)
@@ -72,13 +72,13 @@ def test_a_model_that_is_used_often_gets_machine_code_by_itself():
     np.testing.assert_allclose(model.gravity_torque(q), expected, rtol=1e-14)
 
 
-def test_a_model_that_is_used_once_does_not():
+def test_a_single_call_starts_no_compiler():
     model = RobotModel.from_urdf(PENDULUM)
     model.gravity_torque([0.3])
     assert model._evaluation.specialization._process is None
 
 
-def test_the_next_model_of_the_robot_has_it_at_once():
+def test_the_next_model_of_the_robot_is_specialized_immediately():
     assert not RobotModel.from_urdf(PENDULUM).is_specialized
     assert RobotModel.from_urdf(PENDULUM).specialize()
     model = RobotModel.from_urdf(PENDULUM)
@@ -86,7 +86,7 @@ def test_the_next_model_of_the_robot_has_it_at_once():
     assert inspect.isbuiltin(model.dynamics)
 
 
-def test_models_under_another_gravity_get_it_too():
+def test_models_under_another_gravity_get_the_code_too():
     model = RobotModel.from_urdf(PENDULUM)
     before = model.with_gravity((0.0, 0.0, 0.0))
     assert model.specialize()
@@ -97,29 +97,29 @@ def test_models_under_another_gravity_get_it_too():
     np.testing.assert_array_equal(before.gravity_torque(np.array([0.3])), [0.0])
 
 
-def test_it_can_be_asked_for_without_waiting():
+def test_specialize_without_waiting_returns_immediately():
     model = RobotModel.from_urdf(PENDULUM)
     began = time.process_time()
     model.specialize(wait=False)
-    # Neither waited for nor made here: either takes a second of work.
+    # Neither waiting nor compiling in this process: either takes a second.
     assert not model.is_specialized
     assert time.process_time() - began < 0.1
     assert model.specialize(wait=True)
 
 
-def test_while_enough_others_are_being_made_it_is_asked_for_again(monkeypatch):
-    monkeypatch.setattr(worker, '_MOST_AT_ONCE', 0)
+def test_a_full_compiler_queue_is_retried(monkeypatch):
+    monkeypatch.setattr(worker, '_MAX_PROCESSES', 0)
     model = RobotModel.from_urdf(PENDULUM)
     model.specialize(wait=False)
     assert model._evaluation.specialization._process is None
-    monkeypatch.setattr(worker, '_MOST_AT_ONCE', 1)
+    monkeypatch.setattr(worker, '_MAX_PROCESSES', 1)
     end = time.monotonic() + 60
     while not model.is_specialized and time.monotonic() < end:
         model.gravity_torque([0.3])
     assert model.is_specialized
 
 
-def test_it_can_be_switched_off(monkeypatch):
+def test_an_environment_variable_turns_machine_code_off(monkeypatch):
     monkeypatch.setenv('DYNAMICS_NODE_SPECIALIZE', '0')
     model = RobotModel.from_urdf(PENDULUM)
     assert not model.specialize()
@@ -127,7 +127,7 @@ def test_it_can_be_switched_off(monkeypatch):
     assert np.isfinite(model.gravity_torque([0.3])).all()
 
 
-def test_a_robot_with_very_many_joints_goes_on_with_the_general_kernel():
+def test_a_robot_with_60_joints_uses_the_general_kernel():
     model = RobotModel.from_urdf(random_urdf(3, joints=60, with_mimic=False))
     assert not model.specialize()
     assert model.gravity_torque(np.zeros(60)).shape == (60,)
@@ -150,39 +150,39 @@ def test_a_model_and_its_methods_can_be_copied_and_pickled(duplicate):
         assert model.specialize()
 
 
-def test_what_somebody_put_in_the_place_of_a_method_stays():
+def test_a_function_assigned_to_the_instance_stays():
     model = RobotModel.from_urdf(PENDULUM)
     model.gravity_torque = lambda q: np.zeros(1)
     assert model.specialize()
     np.testing.assert_array_equal(model.gravity_torque(np.array([0.3])), [0.0])
 
 
-@pytest.mark.parametrize('step', ['from_disk', 'make', 'start'])
-def test_whatever_fails_the_general_kernel_goes_on(step, monkeypatch, caplog):
+@pytest.mark.parametrize(
+    'module, step', [(compile, 'from_disk'), (compile, 'make'), (worker, 'start')]
+)
+def test_after_a_failure_the_general_kernel_stays_in_use(module, step, monkeypatch, caplog):
     def fail(*arguments):
         raise OSError('as it happens')
 
-    monkeypatch.setattr(codegen, step, fail)
+    monkeypatch.setattr(module, step, fail)
     model = RobotModel.from_urdf(PENDULUM)
     assert not model.specialize(wait=step != 'start')
     assert np.isfinite(model.gravity_torque([0.3])).all()
     assert 'the general kernel goes on: OSError: as it happens' in caplog.text
 
 
-def test_a_failing_hand_out_does_not_reach_the_caller(caplog):
-    class Refusing:
-        def _use(self, code):
-            raise AttributeError('no')
+def test_a_failing_installation_does_not_reach_the_caller(caplog):
+    def refuse(owner, code):
+        raise AttributeError('no')
 
-    model, refusing = RobotModel.from_urdf(PENDULUM), Refusing()
+    model = RobotModel.from_urdf(PENDULUM)
     assert model.specialize()
-    specialization = Specialization(*model._evaluation.packed)
-    specialization.attach(refusing)
+    Specialization(model._evaluation.packed).attach(model, refuse)
     assert 'the general kernel goes on: AttributeError' in caplog.text
 
 
-def test_a_controller_may_use_its_model_to_the_end():
-    # The finalizers of garbage run in any order: the machine code must outlive them all.
+def test_finalizers_can_call_machine_code_at_exit():
+    # Finalizers run in any order: the machine code must outlive them all.
     script = f"""
 import gc
 import numpy as np
@@ -226,7 +226,7 @@ def test_a_method_of_a_subclass_stays():
     np.testing.assert_allclose(model.gravity_torque([0.3]), 2.0 * plain.gravity_torque([0.3]))
 
 
-def test_python_may_end_while_it_is_made(folder):
+def test_python_can_end_while_the_worker_compiles(folder):
     script = (
         f'from dynamics_node import RobotModel\n'
         f'RobotModel.from_urdf({str(PENDULUM)!r}).specialize(wait=False)\n'
@@ -240,14 +240,14 @@ def test_python_may_end_while_it_is_made(folder):
         timeout=120,
     )
     assert (run.returncode, run.stderr) == (0, '')
-    # The other process finishes what it has begun.
+    # The worker finishes its compilation.
     end = time.monotonic() + 60
     while not list(folder.iterdir()) and time.monotonic() < end:
         time.sleep(0.05)
     assert list(folder.iterdir())
 
 
-def begun():
+def compiler_count():
     """Return how many processes have been started to compile."""
     return len(worker._processes)
 
@@ -271,7 +271,7 @@ def assert_as_the_general_kernel(model, rng):
     general = Evaluation(
         model._evaluation.packed,
         model.joint_names,
-        Specialization(np.empty((0, 3), dtype=np.int64), np.zeros((1, 28))),
+        Specialization(model._evaluation.packed, compile=False),
     )
     states = rng.uniform(-2.0, 2.0, (3, 9, len(model.joint_names)))
     batch = (
@@ -306,23 +306,23 @@ def test_a_second_payload_starts_no_compiler():
     model = RobotModel.from_urdf(SMALL)
     rng = np.random.default_rng(5)
     assert model.specialize()
-    assert begun() == 0
+    assert compiler_count() == 0
     used_until_specialized(with_random_payload(model, rng))
-    assert begun() == 1
+    assert compiler_count() == 1
     for _ in range(20):
         other = with_random_payload(model, rng).with_rotor_inertia(rng.uniform(0.0, 1.0))
         assert other.is_specialized
         assert_as_the_general_kernel(other, rng)
         used_until_specialized(other)
-    assert begun() == 1
-    # Nor does a robot that differs in nothing but its inertia.
+    assert compiler_count() == 1
+    # A robot that differs only in its inertia starts none either.
     heavier = RobotModel.from_urdf(SMALL.replace('mass value="', 'mass value="1'))
     assert not heavier.is_specialized
     assert with_random_payload(heavier, rng).is_specialized
-    assert begun() == 1
+    assert compiler_count() == 1
 
 
-def test_models_that_carried_something_before_it_was_ready_get_it_too():
+def test_earlier_models_with_payload_get_the_code_too():
     model = RobotModel.from_urdf(PENDULUM)
     light, heavy = model.with_payload('rod', 1.0), model.with_payload('rod', 50.0)
     geared = model.with_rotor_inertia(0.3)
@@ -341,17 +341,17 @@ def test_models_that_carried_something_before_it_was_ready_get_it_too():
     )
 
 
-def test_that_for_payloads_can_be_asked_for_before_one_comes():
+def test_the_payload_variant_can_be_compiled_in_advance():
     model = RobotModel.from_urdf(PENDULUM)
     q = np.zeros(1)
-    model.specialize(wait=False, loads=True)
-    assert begun() == 1
+    model.specialize(wait=False, with_payload_code=True)
+    assert compiler_count() == 1
     used_until_specialized(model)
     # One after the other.
     end = time.monotonic() + 10
-    while begun() < 2 and time.monotonic() < end:
+    while compiler_count() < 2 and time.monotonic() < end:
         time.sleep(0.001)
-    assert begun() == 2
+    assert compiler_count() == 2
     for process in worker._processes.values():
         assert process.wait(60.0) == 0
     # The first model that carries something finds it, and so do all that come later.
@@ -361,9 +361,9 @@ def test_that_for_payloads_can_be_asked_for_before_one_comes():
         time.sleep(0.001)
     assert loaded.is_specialized
     assert model.with_payload('rod', 2.0).is_specialized
-    assert begun() == 2
+    assert compiler_count() == 2
     again = RobotModel.from_urdf(PENDULUM)
-    assert again.specialize(loads=True)
+    assert again.specialize(with_payload_code=True)
     np.testing.assert_array_equal(
         again.with_payload('rod', 1.0).mass_matrix(q), loaded.mass_matrix(q)
     )
@@ -371,16 +371,16 @@ def test_that_for_payloads_can_be_asked_for_before_one_comes():
 
 def test_a_new_model_does_not_wait_while_machine_code_is_loaded(small, monkeypatch):
     begun_to_load, may_end = threading.Event(), threading.Event()
-    right = codegen.from_disk
+    right = compile.from_disk
 
-    def slow(*packed):
+    def slow(packed):
         begun_to_load.set()
         assert may_end.wait(60.0)
-        return right(*packed)
+        return right(packed)
 
-    specialization = small._specialization.for_any_inertia
+    specialization = small._specialization.payload_variant
     specialization.code = None
-    monkeypatch.setattr(codegen, 'from_disk', slow)
+    monkeypatch.setattr(compile, 'from_disk', slow)
     thread = threading.Thread(target=specialization._take)
     thread.start()
     try:
@@ -393,13 +393,13 @@ def test_a_new_model_does_not_wait_while_machine_code_is_loaded(small, monkeypat
     assert inspect.isbuiltin(loaded.dynamics)
 
 
-def test_both_can_be_waited_for():
+def test_both_codes_can_be_compiled_in_this_process():
     model = RobotModel.from_urdf(PENDULUM)
-    assert model.with_payload('rod', 1.0).specialize(loads=True)
+    assert model.with_payload('rod', 1.0).specialize(with_payload_code=True)
     assert not model.is_specialized
-    assert model.specialize(loads=True)
+    assert model.specialize(with_payload_code=True)
     assert model.with_rotor_inertia(1.0).is_specialized
-    assert begun() == 0
+    assert compiler_count() == 0
 
 
 @pytest.mark.parametrize('seed', range(4))
@@ -416,7 +416,7 @@ def test_a_payload_and_rotors_on_a_random_tree(seed):
         assert_as_the_general_kernel(robot, rng)
 
 
-def test_a_payload_that_is_removed_gives_the_robot_back_to_the_last_bit(small):
+def test_removing_a_payload_restores_every_bit(small):
     model, rng = small, np.random.default_rng(8)
     states = rng.uniform(-2.0, 2.0, (2, 9, len(model.joint_names)))
     before, batch = model.dynamics(*states[:, 0]), model.dynamics(*states)
@@ -433,8 +433,8 @@ def test_a_payload_that_is_removed_gives_the_robot_back_to_the_last_bit(small):
         assert old.tobytes() == new.tobytes()
 
 
-def test_a_link_without_mass_may_become_loaded():
-    # The tip weighs nothing, so D is singular, whatever the state: until it carries something.
+def test_a_massless_link_can_carry_a_payload():
+    # The tip is massless, so D is singular in every state, until it carries a payload.
     text = random_urdf(12, joints=2, with_mimic=False).replace(
         '</robot>',
         """
@@ -450,7 +450,7 @@ def test_a_link_without_mass_may_become_loaded():
     assert_as_the_general_kernel(loaded, rng)
     qdd = loaded.forward_dynamics(q, qd, tau)
     np.testing.assert_allclose(loaded.inverse_dynamics(q, qd, qdd), tau, rtol=0, atol=1e-10)
-    # The same machine code sees that nothing is there, where only another link is loaded.
+    # The same machine code finds D singular when only another link is loaded.
     elsewhere = loaded.with_payload('link0', *random_body(rng))
     assert elsewhere.is_specialized
     for singular in (model, elsewhere):
@@ -458,8 +458,8 @@ def test_a_link_without_mass_may_become_loaded():
             singular.forward_dynamics(q, qd, tau)
 
 
-def test_a_payload_far_heavier_than_the_robot_does_not_spoil_it_for_others(monkeypatch):
-    # What is loaded is compared at loads that fit the robot, not at whatever comes first.
+def test_a_very_heavy_first_payload_does_not_affect_later_ones(monkeypatch):
+    # Loaded code is compared at loads that fit the robot, not at the first payload.
     model = RobotModel.from_urdf(random_urdf(4, joints=3, with_mimic=False))
     assert model.with_payload(model.link_names[-1], 1.0).specialize()
     monkeypatch.setattr(compile, '_loaded', {})
@@ -470,12 +470,12 @@ def test_a_payload_far_heavier_than_the_robot_does_not_spoil_it_for_others(monke
     )
 
 
-def test_a_thousand_payloads_leave_nothing_behind(small):
+def test_a_thousand_payloads_leak_nothing(small):
     model, rng = small, np.random.default_rng(9)
     bodies = [random_body(rng) for _ in range(10)]
     q = rng.uniform(-1.0, 1.0, len(model.joint_names))
     assert model.with_payload('link0', *bodies[0]).is_specialized
-    processes, codes = begun(), len(compile._loaded)
+    processes, codes = compiler_count(), len(compile._loaded)
 
     def load(times):
         for i in range(times):
@@ -489,12 +489,12 @@ def test_a_thousand_payloads_leave_nothing_behind(small):
     gc.disable()
     try:
         last = load(1000)
-        # No circle either: it goes when nobody holds it, not when garbage is collected.
+        # No reference cycle either: it is freed without a garbage collection.
         assert last() is None
     finally:
         gc.enable()
-    assert len(model._specialization.for_any_inertia._models) == 0
-    assert (begun(), len(compile._loaded)) == (processes, codes)
+    assert len(model._specialization.payload_variant._owners) == 0
+    assert (compiler_count(), len(compile._loaded)) == (processes, codes)
     # A model and its entries take some 10 kB: a thousand would be 10 MB.
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4_000
 
@@ -530,7 +530,7 @@ def test_a_loaded_model_can_be_pickled(ready, request):
     assert other.is_specialized == ready
     q = np.full(len(model.joint_names), 0.3)
     np.testing.assert_array_equal(other.mass_matrix(q), loaded.mass_matrix(q))
-    assert other._specialization.for_any_inertia is other._evaluation.specialization
+    assert other._specialization.payload_variant is other._evaluation.specialization
     assert with_random_payload(other, rng).specialize()
     assert other.is_specialized
     assert_as_the_general_kernel(other, rng)

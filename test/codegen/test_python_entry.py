@@ -1,4 +1,4 @@
-"""The entry from Python: the plain case at once, every other case by the fallback."""
+"""The Python entry point: the common case in machine code, all others by the fallback."""
 
 from concurrent.futures import ThreadPoolExecutor
 import gc
@@ -44,7 +44,7 @@ def assert_same(actual, expected):
 
 
 @pytest.mark.parametrize('name', QUANTITIES)
-def test_the_plain_case_is_answered_by_machine_code(model, arguments, name):
+def test_the_common_case_is_computed_by_machine_code(model, arguments, name):
     function, plain = getattr(model, name), arguments[: QUANTITIES[name]]
     assert inspect.isbuiltin(function)
     actual, expected = function(*plain), getattr(model._evaluation, name)(*plain)
@@ -72,8 +72,8 @@ WAYS_TO_HOLD = {
 
 @pytest.mark.parametrize('way', WAYS_TO_HOLD)
 @pytest.mark.parametrize('kind', ['mass_matrix', 'dynamics'])
-def test_what_somebody_holds_is_never_overwritten(model, way, kind):
-    # More answers than are kept for use again, each held in some way.
+def test_a_referenced_answer_is_never_overwritten(model, way, kind):
+    # More answers than are kept for reuse, each referenced in some way.
     rng, held = np.random.default_rng(3), []
     for _ in range(12):
         q, qd = rng.uniform(-1.0, 1.0, (2, 4))
@@ -91,7 +91,7 @@ def test_what_somebody_holds_is_never_overwritten(model, way, kind):
         np.testing.assert_array_equal(now.reshape(expected.shape), expected)
 
 
-def test_an_answer_that_nobody_holds_is_given_out_again(model, arguments):
+def test_an_unreferenced_answer_is_reused(model, arguments):
     places = {id(model.mass_matrix(arguments[0])) for _ in range(100)}
     assert len(places) == 1
     D = model.mass_matrix(arguments[0])
@@ -112,7 +112,7 @@ CHANGES = {
 
 @pytest.mark.filterwarnings('ignore:Setting the:DeprecationWarning')
 @pytest.mark.parametrize('change', CHANGES)
-def test_an_answer_that_was_changed_is_not_given_out_again(change):
+def test_a_modified_answer_is_not_reused(change):
     model = RobotModel.from_urdf(random_urdf(11, joints=4, with_mimic=False, prismatic=0.0))
     assert model.specialize()
     q = np.array([0.1, 0.2, 0.3, 0.4])
@@ -127,7 +127,7 @@ def test_an_answer_that_was_changed_is_not_given_out_again(change):
         del D
 
 
-def test_threads_do_not_get_each_others_answers(model):
+def test_threads_get_separate_answers(model):
     states = np.random.default_rng(5).uniform(-1.0, 1.0, (8, 4))
     expected = [model._evaluation.mass_matrix(q) for q in states]
 
@@ -158,7 +158,7 @@ OTHER_SHAPES = {
 
 
 @pytest.mark.parametrize('kind', OTHER_SHAPES)
-def test_whatever_can_be_read_as_numbers_is_taken(model, arguments, kind):
+def test_array_likes_go_to_the_fallback(model, arguments, kind):
     q = OTHER_SHAPES[kind](arguments[0])
     expected = model._evaluation.gravity_torque(q)
     np.testing.assert_allclose(
@@ -185,7 +185,7 @@ def test_keywords_are_taken(model, arguments):
         (None, None),
     ],
 )
-def test_wrong_arguments_are_refused_as_ever(model, wrong):
+def test_machine_code_refuses_wrong_arguments(model, wrong):
     with pytest.raises((ArgumentError, TypeError, ValueError)):
         model.dynamics(*wrong)
 
@@ -212,7 +212,7 @@ def test_large_angles_are_left_to_the_general_kernel(model, arguments):
     np.testing.assert_array_equal(model.gravity_torque(q), model._evaluation.gravity_torque(q))
 
 
-def test_a_robot_without_inertia_behind_a_joint_is_refused_as_ever():
+def test_machine_code_refuses_a_singular_mass_matrix():
     # A massless tip behind the arm's last joint: D is singular, wherever the arm is.
     text = random_urdf(12, joints=2, with_mimic=False).replace(
         '</robot>',
@@ -239,14 +239,14 @@ def test_addresses_cannot_be_written(model):
         model.dynamics.__self__[:] = 0
 
 
-def test_other_users_of_ctypes_see_nothing():
+def test_ctypes_pythonapi_is_not_modified():
     import ctypes
 
     for name in python_entry._SYMBOLS:
         assert getattr(ctypes.pythonapi, name).argtypes is None
 
 
-def test_gravity_is_each_models_own(model, arguments):
+def test_each_model_has_its_gravity(model, arguments):
     other = model.with_gravity((1.0, -2.0, 3.0))
     assert inspect.isbuiltin(other.gravity_torque)
     expected = other._evaluation.gravity_torque(arguments[0])
@@ -275,7 +275,7 @@ def test_a_function_keeps_the_payload_that_it_was_made_with(model, arguments):
     del carrying
     gc.collect()
     # Memory that was freed would be taken by these.
-    garbage = [np.full(model._evaluation.packed[1].shape, np.nan) for _ in range(100)]
+    garbage = [np.full(model._evaluation.packed.numbers.shape, np.nan) for _ in range(100)]
     for function, wanted in zip(functions, expected, strict=True):
         np.testing.assert_allclose(
             function(arguments[0]), wanted, rtol=0, atol=1e-12 * np.abs(wanted).max()

@@ -1,4 +1,4 @@
-"""A robot's machine code, its own and that for payloads, keeps the promise."""
+"""Accuracy of machine code, both of a robot and of its payload variant."""
 
 from dynamics_node import RobotModel
 import numpy as np
@@ -11,8 +11,8 @@ from support.robots import public_robot
 
 pytestmark = needs_machine_code
 
-# Compiling takes a second or two each; the general kernel is held to this on all robots, and
-# `kernels/specialized` holds the machine code to the general kernel on random trees.
+# Compiling takes one or two seconds per robot. The general kernel is tested like this on all
+# robots; test_trace and test_manager compare machine code with it on random trees.
 PUBLIC = (
     'ur_description/urdf/ur5_robot.urdf',
     'panda_description/urdf/panda.urdf',
@@ -21,7 +21,7 @@ PUBLIC = (
 EXTREME = [name for name in extreme_robots() if 'boom' in name or 'km away' in name]
 
 
-# With a joint that mimics another, with fingers, and as rounding hurts most.
+# A mimic joint, fingers, and the two worst cases of rounding.
 CARRIERS = {
     'panda': (lambda: public_robot(PUBLIC[1]).read_text(), 'panda_leftfinger'),
     'kinova': (lambda: public_robot(PUBLIC[2]).read_text(), 'j2s6s200_link_finger_1'),
@@ -37,7 +37,7 @@ def specialized(source):
 
 
 @pytest.mark.parametrize('name', PUBLIC)
-def test_a_public_robot_keeps_the_promise(name):
+def test_a_public_robot_is_within_the_accuracy_bound(name):
     text = public_robot(name).read_text()
     errors = row(name, text, specialized(text)).errors
     for judge in ('pinocchio', 'exact'):
@@ -54,7 +54,7 @@ def test_an_extreme_robot_keeps_its_digits(name):
 
 
 @pytest.mark.parametrize('name', CARRIERS)
-def test_machine_code_for_payloads_keeps_the_promise(name):
+def test_payload_code_is_within_the_accuracy_bound(name):
     text, link = CARRIERS[name][0](), CARRIERS[name][1]
     rng = np.random.default_rng(3)
     model = RobotModel.from_urdf(text)
@@ -69,7 +69,7 @@ def test_machine_code_for_payloads_keeps_the_promise(name):
                 assert error <= BOUND, (judge, quantity)
 
 
-def test_machine_code_for_payloads_knows_links_that_weigh_nothing():
+def test_payload_code_on_massless_links_is_within_the_accuracy_bound():
     # The last three links are empty frames that joints turn.
     frames = (('tool0', 'e0', '1 0 0'), ('e0', 'e1', '0 1 0'), ('e1', 'e2', '0 0 1'))
     empty = ''.join(

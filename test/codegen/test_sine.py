@@ -2,13 +2,13 @@
 
 import ctypes
 
-from dynamics_node.codegen import compile
+from dynamics_node.codegen import llvm_target
 from dynamics_node.codegen.llvm_ir import Code, declarations
 from dynamics_node.codegen.sine import LARGEST_ANGLE, sine_and_cosine
 import numpy as np
 import pytest
 
-LANES = sorted({1, 2, compile.lanes()})
+LANES = sorted({1, 2, llvm_target.lanes()})
 
 
 def compiled(lanes):
@@ -25,14 +25,13 @@ def compiled(lanes):
             '}',
         ]
     )
-    loaded = compile.LoadedCode([compile.compile_code(text)], ['f'])
-    function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3)(loaded.address('f'))
+    addresses = llvm_target.load([llvm_target.compile_code(text)], ['f'])
+    function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3)(addresses['f'])
 
     def sine_cosine(x):
         sine, cosine = np.empty_like(x), np.empty_like(x)
         for i in range(0, x.size, lanes):
             function(*(array[i:].ctypes.data for array in (x, sine, cosine)))
-        assert loaded
         return sine, cosine
 
     return sine_cosine

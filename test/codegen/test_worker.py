@@ -1,4 +1,4 @@
-"""Another process compiles, once per robot, and leaves the machine code on disk."""
+"""The worker process: one per robot, with its result on disk."""
 
 from pathlib import Path
 import sys
@@ -25,55 +25,55 @@ def packed(text):
     return pack(model.tree, model.gravity)
 
 
-def test_the_code_is_on_disk_when_it_ends(folder):
+def test_the_worker_leaves_the_code_on_disk(folder):
     robot = packed(PENDULUM)
-    process = worker.start(*robot)
-    assert worker.start(*robot) is process
+    process = worker.start(robot)
+    assert worker.start(robot) is process
     assert process.wait(60.0) == 0
-    assert [path.name for path in folder.iterdir()] == [disk_cache.key(*robot)]
+    assert [path.name for path in folder.iterdir()] == [disk_cache.key(robot)]
 
 
-def test_that_for_any_inertia_is_another(folder):
+def test_the_payload_variant_is_compiled_separately(folder):
     robot = packed(PENDULUM)
-    process = worker.start(*robot, True)
-    assert worker.start(*robot, True) is process
-    assert worker.start(*robot) is not process
+    process = worker.start(robot.with_payload_code())
+    assert worker.start(robot.with_payload_code()) is process
+    assert worker.start(robot) is not process
     for started in worker._processes.values():
         assert started.wait(60.0) == 0
     assert {path.name for path in folder.iterdir()} == {
-        disk_cache.key(*robot),
-        disk_cache.key(*robot, True),
+        disk_cache.key(robot),
+        disk_cache.key(robot.with_payload_code()),
     }
 
 
-def test_it_says_when_there_is_none(folder):
-    process = worker.start(*packed(random_urdf(3, joints=60, with_mimic=False)))
+def test_the_worker_fails_for_a_robot_that_is_too_large(folder):
+    process = worker.start(packed(random_urdf(3, joints=60, with_mimic=False)))
     assert process.wait(60.0) == 1
     assert list(folder.iterdir()) == []
 
 
-def test_a_place_that_cannot_be_written_gives_none(folder, monkeypatch):
+def test_without_a_writable_folder_the_worker_fails(folder, monkeypatch):
     (folder / 'file').write_text('')
     monkeypatch.setenv('DYNAMICS_NODE_CACHE_DIR', str(folder / 'file' / 'cache'))
-    assert worker.start(*packed(PENDULUM)).wait(60.0) == 1
+    assert worker.start(packed(PENDULUM)).wait(60.0) == 1
 
 
-def test_a_flood_of_robots_does_not_become_a_flood_of_processes(monkeypatch):
-    monkeypatch.setattr(worker, '_MOST_AT_ONCE', 1)
+def test_the_number_of_compiler_processes_is_limited(monkeypatch):
+    monkeypatch.setattr(worker, '_MAX_PROCESSES', 1)
     robot, other = packed(PENDULUM), packed(random_urdf(1, joints=2))
-    process = worker.start(*robot)
-    assert worker.start(*other) is None
-    assert worker.start(*robot) is process
+    process = worker.start(robot)
+    assert worker.start(other) is None
+    assert worker.start(robot) is process
     assert process.wait(60.0) == 0
-    assert worker.start(*other).wait(60.0) == 0
+    assert worker.start(other).wait(60.0) == 0
 
 
 @needs_machine_code
-def test_nothing_that_lies_in_the_current_folder_runs(tmp_path_factory, monkeypatch):
-    current = tmp_path_factory.mktemp('somebody_elses')
+def test_the_worker_runs_no_file_of_the_current_folder(tmp_path_factory, monkeypatch):
+    current = tmp_path_factory.mktemp('current')
     (current / 'numpy.py').write_text('open("ran", "w")')
     monkeypatch.chdir(current)
-    assert worker.start(*packed(PENDULUM)).wait(60.0) == 0
+    assert worker.start(packed(PENDULUM)).wait(60.0) == 0
     assert [path.name for path in current.iterdir()] == ['numpy.py']
 
 
@@ -85,4 +85,4 @@ def test_packages_of_an_interactive_python_are_found(monkeypatch):
         'path',
         ['', *(place for place in sys.path if place and Path(place).resolve() != ROOT)],
     )
-    assert worker.start(*packed(PENDULUM)).wait(60.0) == 0
+    assert worker.start(packed(PENDULUM)).wait(60.0) == 0

@@ -1,4 +1,4 @@
-"""The simulated robot as a real process, and a ROS client with one executor that is kept."""
+"""The simulated robot as a process, and its ROS client."""
 
 import os
 from pathlib import Path
@@ -20,7 +20,7 @@ from support.ros_domain import claim
 
 ARM7 = Path(__file__).resolve().parents[2] / 'config' / 'robots' / 'arm7.urdf'
 SERVICES = {'set_brakes': SetBool, 'reset': Trigger, 'push': Trigger}
-# For what never comes: on a busy machine a process may take long to start. [s]
+# Timeout of all waits [s]: on a busy machine a process may take long to start.
 PATIENCE = 60.0
 
 
@@ -65,7 +65,7 @@ class Robot:
         try:
             self._connect()
         except BaseException:
-            self._leave()  # or it would be heard by the next robot in its domain
+            self._leave()  # otherwise the next robot in this domain would receive its messages
             raise
 
     def _connect(self):

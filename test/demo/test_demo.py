@@ -1,38 +1,18 @@
-"""The whole demo: the real node holds the simulated arm, and the exit code says so."""
+"""The complete demo, with its exit codes."""
 
 from pathlib import Path
-import subprocess
-import sys
 
 from dynamics_node.demo.__main__ import main
 from PIL import Image
 import pytest
+from support.python_process import run_python
 
 
-@pytest.fixture
-def demo(child_environment, tmp_path):
-    """Return a function that runs the demo to its end: exit code and output."""
-
-    def run(*arguments):
-        done = subprocess.run(
-            [sys.executable, '-m', 'dynamics_node.demo.__main__', *arguments],
-            cwd=tmp_path,
-            env=child_environment,
-            timeout=280,
-            text=True,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-        )
-        return done.returncode, done.stdout
-
-    return run
-
-
-def test_the_demo_succeeds_and_draws_its_figure(demo, tmp_path):
-    """Falls, holds, is pushed, holds there: exit code 0."""
-    code, output = demo('--hold', '1')
-    assert code == 0, output
-    assert 'shoulder_pitch' in output and 'It falls without the node' in output
+def test_the_demo_succeeds_and_draws_its_figure(child_environment, tmp_path):
+    module = 'dynamics_node.demo.__main__'
+    run = run_python('-m', module, '--hold', '1', cwd=tmp_path, env=child_environment, timeout=280)
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert 'shoulder_pitch' in run.stdout and 'It falls without the node' in run.stdout
     with Image.open(tmp_path / 'demo.png') as figure:
         assert figure.size == (1440, 1200)
 
@@ -47,10 +27,16 @@ def test_the_demo_succeeds_and_draws_its_figure(demo, tmp_path):
 def test_a_robot_that_cannot_be_run_ends_it_with_a_sentence(
     capsys, tmp_path, monkeypatch, text, sentence
 ):
-    """Before any process is started, exit code 1."""
     monkeypatch.setenv('ROS_DOMAIN_ID', '17')
     path = Path(tmp_path) / 'robot.urdf'
     if text is not None:
         path.write_text(text)
     assert main(['demo', '--robot', str(path)]) == 1
     assert sentence in ' '.join(capsys.readouterr().out.split())
+
+
+def test_a_viewer_without_a_display_is_refused_before_the_start(capsys, monkeypatch):
+    for variable in ('DISPLAY', 'WAYLAND_DISPLAY'):
+        monkeypatch.delenv(variable, raising=False)
+    assert main(['demo', '--view']) == 1
+    assert capsys.readouterr().out.startswith('demo failed: the viewer needs a display')

@@ -1,9 +1,10 @@
-"""The engine, without ROS: against Pinocchio, and against what a robot does."""
+"""The physics of the simulated robot: against Pinocchio, and brakes, pushes, mimic joints."""
 
 from dynamics_node.demo.mujoco_arm import MujocoArm, UnstableError
 from dynamics_node.demo.mujoco_model import TIME_STEP
 from dynamics_node.demo.poses import random_poses, start_pose
 from dynamics_node.demo.robot_text import RobotRefusedError
+from dynamics_node.demo.viewer import add_scenery, arrange_scenery, FLOOR
 import numpy as np
 import pinocchio
 import pytest
@@ -37,20 +38,17 @@ def oracle(arm7_text):
 
 
 def test_mass_matrix_agrees_with_pinocchio(arm, oracle):
-    """The engine has read the same robot from the file as another library."""
     for pose in random_poses(arm, 50):
         assert np.abs(arm.mass_matrix(pose) - oracle(pose)[0]).max() < 1e-6
 
 
 def test_gravity_torque_agrees_with_pinocchio(arm, oracle):
-    """Masses and centers of mass, too."""
     for pose in random_poses(arm, 50):
         assert np.abs(arm.gravity_torque(pose) - oracle(pose)[1]).max() < 1e-5
 
 
 @pytest.mark.parametrize('link', ['base', 'forearm', 'hand', 'right_finger'])
 def test_a_link_named_world_is_a_link_like_any_other(arm, arm7_text, link):
-    """MuJoCo takes one for the ground: it dropped its mass, or the whole robot."""
     assert f'"{link}"' in arm7_text
     renamed = MujocoArm(arm7_text.replace(f'"{link}"', '"world"'))
     pose = start_pose(arm, 'arm7')
@@ -59,7 +57,6 @@ def test_a_link_named_world_is_a_link_like_any_other(arm, arm7_text, link):
 
 
 def test_the_second_finger_follows_the_first(arm):
-    """Also while the first one is driven hard and the arm falls."""
     arm.place(start_pose(arm, 'arm7') + [0, 0, 0, 0, 0, 0, 0, -0.02])
     arm.set_brakes(False)
     arm.set_effort([0, 0, 0, 0, 0, 0, 0, 2.0])
@@ -72,7 +69,6 @@ def test_the_second_finger_follows_the_first(arm):
 
 
 def test_brakes_hold_against_any_effort(arm):
-    """And time goes on."""
     before, start = arm.position.copy(), arm.data.time
     arm.set_effort(np.full(8, 1000.0))
     arm.step(200)
@@ -81,7 +77,6 @@ def test_brakes_hold_against_any_effort(arm):
 
 
 def test_released_it_falls_and_the_brakes_catch_it(arm):
-    """The brakes stop it at once."""
     before = arm.position.copy()
     arm.set_brakes(False)
     arm.step(1000)
@@ -93,7 +88,6 @@ def test_released_it_falls_and_the_brakes_catch_it(arm):
 
 
 def test_the_gravity_torque_holds_it(arm):
-    """For ten simulated seconds, with one constant effort."""
     before = arm.position.copy()
     arm.set_effort(arm.gravity_torque(arm.driven_position))
     arm.set_brakes(False)
@@ -102,7 +96,6 @@ def test_the_gravity_torque_holds_it(arm):
 
 
 def test_a_viewer_that_clears_external_forces_does_not_stop_a_push(arm):
-    """As MuJoCo's passive viewer does each time it is shown the state."""
     arm.set_brakes(False)
     before = arm.driven_position
     arm.set_effort(arm.gravity_torque(before))
@@ -113,8 +106,16 @@ def test_a_viewer_that_clears_external_forces_does_not_stop_a_push(arm):
     assert np.abs(arm.driven_position - before).max() > 0.02
 
 
+def test_the_scenery_of_the_viewer_changes_no_dynamics(arm, arm7_text):
+    seen = MujocoArm(arm7_text, add_scenery)
+    reach, pose = arrange_scenery(seen), arm.driven_position
+    assert np.array_equal(seen.mass_matrix(pose), arm.mass_matrix(pose))
+    assert np.array_equal(seen.gravity_torque(pose), arm.gravity_torque(pose))
+    assert seen.last_link == arm.last_link
+    assert 0.8 < reach < 1.4 and seen.model.geom(FLOOR).pos[2] < 0.0
+
+
 def test_a_push_ends_after_its_time(arm):
-    """The force acts for the duration and not longer."""
     arm.set_effort(arm.gravity_torque(arm.driven_position))
     arm.set_brakes(False)
     arm.push([0.0, 20.0, 0.0], 0.1)
@@ -126,12 +127,10 @@ def test_a_push_ends_after_its_time(arm):
 
 
 def test_the_last_link_is_the_one_that_carries_the_hand(arm):
-    """Not a finger: fixed links are fused into the disc behind the last joint of the arm."""
     assert arm.model.body(arm.last_link).name == 'wrist_disc'
 
 
 def test_the_jacobian_of_the_last_link_is_its_derivative(arm):
-    """By finite differences of the stick figure's end."""
     pose, step = arm.driven_position, 1e-6
     for column in range(len(pose)):
         forward, backward = pose.copy(), pose.copy()
@@ -142,7 +141,6 @@ def test_the_jacobian_of_the_last_link_is_its_derivative(arm):
 
 
 def test_gliding_ends_at_the_goal_on_the_brakes(arm):
-    """Within the velocity limits."""
     goal = np.array([1.0, 0.2, -0.5, 1.0, 0.3, -0.4, 0.5, 0.04])
     steps = int(np.ceil(arm.glide_to(goal) / TIME_STEP)) + 1
     fastest = np.zeros(8)
@@ -155,7 +153,6 @@ def test_gliding_ends_at_the_goal_on_the_brakes(arm):
 
 
 def test_efforts_beyond_the_limits_are_not_clamped(arm):
-    """The engine would clamp an actuator to the URDF's effort limit; this is no actuator."""
     arm.set_brakes(False)
     arm.set_effort([0, 0, 0, 0, 0, 0, 1200.0, 0])
     arm.step()
@@ -164,7 +161,6 @@ def test_efforts_beyond_the_limits_are_not_clamped(arm):
 
 
 def test_absurd_efforts_end_on_the_brakes(arm, tmp_path, monkeypatch):
-    """Where the arm was, and without MuJoCo's log file in the current directory."""
     monkeypatch.chdir(tmp_path)
     before = arm.position.copy()
     arm.set_brakes(False)
@@ -176,7 +172,6 @@ def test_absurd_efforts_end_on_the_brakes(arm, tmp_path, monkeypatch):
 
 
 def test_mujoco_s_refusal_becomes_one_sentence():
-    """With the reason."""
     ghost = (
         '<robot name="g"><link name="a"/><link name="b"/><joint name="j" type="continuous">'
         '<parent link="a"/><child link="b"/></joint></robot>'

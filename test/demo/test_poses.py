@@ -1,4 +1,4 @@
-"""Start poses, damping, push and effort limits for robots that nobody has prepared."""
+"""Start poses, damping, pushes and effort limits for unprepared robots."""
 
 from dynamics_node.demo.missing_values import (
     add_missing_damping,
@@ -7,8 +7,14 @@ from dynamics_node.demo.missing_values import (
 )
 from dynamics_node.demo.mujoco_arm import MujocoArm
 from dynamics_node.demo.mujoco_model import TIME_STEP
-from dynamics_node.demo.poses import choose_pose, gravity_peak, random_poses, start_pose
-from dynamics_node.demo.push import plan_push, WANTED
+from dynamics_node.demo.poses import (
+    choose_pose,
+    gravity_peak,
+    plan_push,
+    random_poses,
+    start_pose,
+    WANTED,
+)
 from dynamics_node.demo.robot_text import RobotRefusedError
 import numpy as np
 import pytest
@@ -21,13 +27,11 @@ def arm(arm7_text):
 
 
 def test_a_chosen_pose_is_the_same_every_time(arm):
-    """Seeded: two processes, the simulator and whoever wants to know, agree."""
     assert np.array_equal(choose_pose(arm), choose_pose(arm))
 
 
 @pytest.mark.parametrize('choose', [choose_pose, lambda arm: start_pose(arm, 'arm7')])
 def test_a_start_pose_can_be_held_and_falls(arm, choose):
-    """Within limits and efforts, above the ground, and more than 20 degrees in a second."""
     pose = choose(arm)
     torque = arm.gravity_torque(pose)
     for value, effort, joint in zip(pose, torque, arm.driven):
@@ -41,32 +45,28 @@ def test_a_start_pose_can_be_held_and_falls(arm, choose):
 
 
 def test_a_robot_that_is_too_weak_for_itself_is_refused(arm7_text):
-    """No pose can be held with 0.001 N m."""
     weak = arm7_text.replace('effort="90"', 'effort="0.001"')
     with pytest.raises(RobotRefusedError, match='give the parameter start_pose'):
         choose_pose(MujocoArm(weak))
 
 
 def test_arm7_needs_no_extra_damping(arm7_text):
-    """The demo runs on the URDF as it is."""
     arm = MujocoArm(arm7_text)
     before = arm.damping().copy()
     assert add_missing_damping(arm) == []
     assert np.array_equal(arm.damping(), before)
 
 
-def test_missing_damping_is_added_and_said(arm7_text):
-    """Only where there is practically none."""
+def test_missing_damping_is_added_and_reported(arm7_text):
     text = arm7_text.replace('<dynamics damping="5" ', '<dynamics damping="0.003" ')
     arm = MujocoArm(text)
-    said = add_missing_damping(arm)
-    assert [line.split()[0] for line in said] == ['shoulder_yaw', 'shoulder_pitch']
-    assert '0.003 -> ' in said[0] and said[0].endswith('N m s/rad')
+    changes = add_missing_damping(arm)
+    assert [line.split()[0] for line in changes] == ['shoulder_yaw', 'shoulder_pitch']
+    assert '0.003 -> ' in changes[0] and changes[0].endswith('N m s/rad')
     assert np.all(arm.damping()[:2] > 1.0) and arm.damping()[2] == 4.0
 
 
 def test_a_planned_push_moves_the_softest_joint_as_far_as_planned(arm):
-    """Friction eats the impulse: way = torque * time / damping, if the lever stays the same."""
     pose = start_pose(arm, 'arm7')
     force = plan_push(arm, pose, 0.25)
     torque = arm.last_link_jacobian(pose).T @ force
@@ -75,7 +75,6 @@ def test_a_planned_push_moves_the_softest_joint_as_far_as_planned(arm):
 
 
 def test_a_push_keeps_off_the_limits(arm):
-    """Near the upper limit of the yaw joint it pushes the other way."""
     pose = start_pose(arm, 'arm7')
     pose[0] = 2.75
     torque = arm.last_link_jacobian(pose).T @ plan_push(arm, pose, 0.25)
@@ -83,7 +82,6 @@ def test_a_push_keeps_off_the_limits(arm):
 
 
 def test_missing_effort_limits_are_filled_in(arm7_text):
-    """Twice what gravity asks for; stated ones stay."""
     bare = MujocoArm(arm7_text.replace('effort="90" ', ''))
     names = ['shoulder_yaw', 'shoulder_pitch', 'upper_arm_roll', 'elbow_pitch']
     assert joints_without_limit(bare) == names
@@ -93,7 +91,6 @@ def test_missing_effort_limits_are_filled_in(arm7_text):
 
 
 def test_random_poses_keep_away_from_the_limits(arm):
-    """So that the robot has room to fall and to be pushed."""
     poses = np.array(list(random_poses(arm, 200)))
     lower = np.array([joint.lower for joint in arm.driven])
     upper = np.array([joint.upper for joint in arm.driven])

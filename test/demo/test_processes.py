@@ -1,4 +1,4 @@
-"""Child processes: ended for certain, and their logs shown."""
+"""Child processes of the demo: always ended, with logs."""
 
 import signal
 
@@ -15,7 +15,6 @@ def sigint_is_heard():
 
 
 def test_processes_end_with_the_context_and_get_ctrl_c_first():
-    """A server serves for ever, and ends by itself on Ctrl-C."""
     with Processes() as processes:
         processes.start('server', 'http.server', '0', '--bind', '127.0.0.1')
         child = processes._running['server']
@@ -26,7 +25,6 @@ def test_processes_end_with_the_context_and_get_ctrl_c_first():
 
 
 def test_a_process_that_ends_by_itself_is_a_failure_with_its_log():
-    """The sentence names it, the tail says why."""
     with Processes() as processes:
         processes.start('helper', 'no_such_module_at_all')
         processes._running['helper'].wait()

@@ -1,4 +1,4 @@
-"""How displacement is measured, and when the demo calls it a failure."""
+"""Measured displacements, and the expectations of the demo."""
 
 from dynamics_node.demo.recording import Recording
 from dynamics_node.demo.story import Outcome
@@ -28,13 +28,11 @@ def recording():
 
 
 def test_the_order_of_the_joints_is_the_recording_s(recording):
-    """By name, whatever order the messages have."""
     assert recording.positions().tolist() == [[0, 0], [0.5, 0.01], [0.1, 0]]
     assert recording.times().tolist() == [0, 0.5, 1.25]
 
 
 def test_displacement_is_the_largest_on_the_way_not_the_last(recording):
-    """In degrees and in mm."""
     way = recording.displacement(np.zeros(2), 0.0, 1.25)
     assert way == pytest.approx([np.degrees(0.5), 10.0])
     assert recording.displacement(np.zeros(2), 1.0, 2.0) == pytest.approx([np.degrees(0.1), 0.0])
@@ -46,7 +44,6 @@ def outcome(recording, fall=60.0, drift=0.1, pushed=20.0, after=0.1):
 
 
 def test_a_good_run_has_no_failures(recording):
-    """All four figures are as expected."""
     assert outcome(recording).failures() == []
 
 
@@ -61,6 +58,5 @@ def test_a_good_run_has_no_failures(recording):
     ],
 )
 def test_every_figure_can_fail_the_demo(recording, change, sentence):
-    """With one sentence that has both numbers."""
     failures = outcome(recording, **change).failures()
     assert len(failures) == 1 and sentence in failures[0]

@@ -1,4 +1,4 @@
-"""What the simulator reads from the URDF text, and what it hides from MuJoCo."""
+"""The simulator's URDF reader, and the text it passes to MuJoCo."""
 
 import math
 
@@ -18,7 +18,6 @@ def joint(name, kind='revolute', inner=''):
 
 
 def test_prefixes_that_nothing_declares_do_no_harm():
-    """Public URDFs have them."""
     text = robot(joint('z', inner='<limit drake:acceleration="2.5" effort="3"/>'), '<drake:x/>')
     [only] = movable_joints(text)
     assert only.effort == 3.0
@@ -26,7 +25,6 @@ def test_prefixes_that_nothing_declares_do_no_harm():
 
 
 def test_joints_come_in_the_order_of_the_document():
-    """Fixed ones are left out."""
     text = robot(
         joint('z'), joint('f', 'fixed'), joint('a', 'continuous'), joint('m', 'prismatic')
     )
@@ -35,7 +33,6 @@ def test_joints_come_in_the_order_of_the_document():
 
 
 def test_limits_and_damping_are_read():
-    """Nothing stated means infinite or zero; a range of nothing is none."""
     stated, bare, endless, empty = movable_joints(
         robot(
             joint(
@@ -61,7 +58,6 @@ def test_limits_and_damping_are_read():
 
 
 def test_a_chain_of_mimic_joints_ends_at_the_driven_one():
-    """Here c = 2 b + 1 and b = 3 a + 4, so c = 6 a + 9."""
     matrix, offset = mimic_map(
         movable_joints(
             robot(
@@ -85,7 +81,6 @@ def test_a_chain_of_mimic_joints_ends_at_the_driven_one():
     ],
 )
 def test_what_cannot_be_simulated_is_refused_with_a_sentence(text, sentence):
-    """Before MuJoCo sees it."""
     with pytest.raises(RobotRefusedError, match=sentence):
         movable_joints(text)
 
@@ -98,13 +93,11 @@ def test_what_cannot_be_simulated_is_refused_with_a_sentence(text, sentence):
     ],
 )
 def test_a_mimic_joint_without_an_end_is_refused(inner, sentence):
-    """Unknown or in a circle."""
     with pytest.raises(RobotRefusedError, match=sentence):
         mimic_map(movable_joints(robot(joint('a', inner=inner))))
 
 
 def test_mujoco_gets_no_meshes_collisions_or_mimic_tags():
-    """But the primitives, to look at."""
     text = mujoco_text(
         '<robot name="r"><link name="a">'
         '<visual><geometry><mesh filename="package://x/y.dae"/></geometry></visual>'

@@ -1,4 +1,4 @@
-"""The simulated robot as a process: what ROS sees of it, over real DDS."""
+"""The ROS interface of the simulated robot, over DDS."""
 
 import math
 
@@ -32,20 +32,17 @@ def largest_way(before, after):
 
 
 def test_it_publishes_the_original_description(robot, arm7_text):
-    """Latched, so that the node may come later."""
     robot.wait_for(lambda: robot.description)
     assert robot.description == arm7_text
 
 
 def test_joint_states_are_alphabetical_and_complete(robot):
-    """As joint_state_broadcaster does it: not in the order of the URDF, mimic joints included."""
     state = robot.states[-1]
     assert list(state.name) == sorted([*DRIVEN, 'right_finger_slide'])
     assert len(state.position) == len(state.velocity) == len(state.effort) == 9
 
 
 def test_joint_states_come_at_about_the_rate(robot):
-    """500 Hz: never more, and less only where a busy machine takes its time."""
     states = robot.spin_for(1.0)
     stamps = [state.header.stamp.sec + state.header.stamp.nanosec * 1e-9 for state in states]
     assert len(states) < 525
@@ -56,13 +53,11 @@ def test_joint_states_come_at_about_the_rate(robot):
 
 
 def test_the_brakes_hold_at_start_up(robot):
-    """Not a bit moves without a command."""
     positions = {tuple(state.position) for state in robot.spin_for(0.3)}
     assert len(positions) == 1
 
 
 def test_released_without_a_command_it_falls(robot):
-    """Far, and downwards."""
     before = robot.positions()
     assert robot.call('set_brakes', data=False).success
     robot.wait_for(lambda: largest_way(before, robot.positions()) > 20.0)
@@ -70,7 +65,6 @@ def test_released_without_a_command_it_falls(robot):
 
 
 def test_one_command_is_held_for_ever(robot, arm7_text):
-    """A single message with the gravity torque keeps the arm still."""
     before, torque = robot.positions(), holding_command(robot, arm7_text)
     robot.command(torque)
     robot.wait_for(lambda: robot.efforts()['shoulder_pitch'] != 0.0)
@@ -84,25 +78,21 @@ def test_one_command_is_held_for_ever(robot, arm7_text):
 
 @pytest.mark.parametrize('wrong', [[], [1.0] * 7, [1.0] * 9, [math.nan] * 8])
 def test_a_wrong_command_is_ignored(robot, wrong):
-    """Too short, too long, empty or not a number: the last good one stays."""
     good = [0.1 * i for i in range(8)]
     robot.command(good)
     robot.wait_for(lambda: robot.efforts()['left_finger_slide'] == good[-1])
     robot.command(wrong)
-    assert {tuple(state.effort) for state in robot.spin_for(0.1)} == {
-        tuple(robot.states[-1].effort)
-    }
+    efforts = {tuple(state.effort) for state in robot.spin_for(0.1)}
+    assert efforts == {tuple(robot.states[-1].effort)}
     assert robot.efforts()['left_finger_slide'] == good[-1]
 
 
 def test_nothing_is_clamped(robot):
-    """The node has to clamp, as with Jazzy's ros2_control."""
     robot.command([1e4] * 8)
     robot.wait_for(lambda: robot.efforts()['wrist_roll'] == 1e4)
 
 
 def test_a_push_moves_the_held_arm(robot, arm7_text):
-    """And it says with what."""
     before = robot.positions()
     robot.command(holding_command(robot, arm7_text))
     robot.wait_for(lambda: robot.efforts()['shoulder_pitch'] != 0.0)
@@ -113,13 +103,11 @@ def test_a_push_moves_the_held_arm(robot, arm7_text):
 
 
 def test_a_push_on_the_brakes_is_refused(robot):
-    """It would do nothing, and that deserves an answer."""
     answer = robot.call('push')
     assert not answer.success and 'brakes are engaged' in answer.message
 
 
 def test_reset_travels_back_without_a_jump(robot):
-    """A robot cannot jump, and a watchdog on joint states would notice one."""
     start = robot.positions()
     robot.command([5.0] * 8)
     robot.call('set_brakes', data=False)
@@ -137,7 +125,6 @@ def test_reset_travels_back_without_a_jump(robot):
 
 
 def test_ctrl_c_ends_it_quietly(start_robot):
-    """Exit code 0 and nothing but its own log lines; `joints` and `start_pose` in one go."""
     order = list(reversed(DRIVEN))
     pose = [0.1, 0.5, 0.0, 0.3, 0.0, 0.2, 0.0, 0.01]
     robot = start_robot(f'joints:=[{", ".join(order)}]', f'start_pose:={pose}')
@@ -151,7 +138,6 @@ def test_ctrl_c_ends_it_quietly(start_robot):
 
 
 def test_what_cannot_be_run_is_refused_in_one_sentence(refusals, tmp_path):
-    """A robot that MuJoCo cannot move, a viewer without a display, a wrong start pose."""
     path = tmp_path / 'ghost.urdf'
     path.write_text(NO_BODY)
     ghost, blind, lost = refusals(

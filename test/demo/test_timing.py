@@ -1,4 +1,4 @@
-"""Two clocks that the test turns, and a processor that is lost between their readings."""
+"""Steps in real time, and the offset between two clocks."""
 
 from dynamics_node.demo.timing import ClockOffset, Pacer
 import pytest
@@ -31,7 +31,6 @@ def error(offset, clocks):
 
 
 def test_the_offset_does_not_jitter_with_the_readings():
-    """However long they take."""
     clocks = Clocks(
         [3 * MILLISECOND, 0, MILLISECOND, 7 * MILLISECOND, 100]
         + 50 * [0, 4 * MILLISECOND, 90 * MILLISECOND]
@@ -43,7 +42,6 @@ def test_the_offset_does_not_jitter_with_the_readings():
 
 
 def test_a_clock_that_was_set_is_followed():
-    """Ahead or back; a slow drift only when it has become something."""
     clocks = Clocks([])
     offset = ClockOffset(clocks.clock, clocks.steady)
     for change in (10_000 * MILLISECOND, -15_000 * MILLISECOND, 2 * MILLISECOND):
@@ -54,7 +52,6 @@ def test_a_clock_that_was_set_is_followed():
 
 
 def test_as_many_steps_as_time_has_passed():
-    """Every millisecond twice, whatever the rhythm of the calls."""
     pacer = Pacer(0.0005, 10.0)
     assert pacer.steps_due(10.002) == 4
     assert pacer.steps_due(10.002) == 0
@@ -64,21 +61,18 @@ def test_as_many_steps_as_time_has_passed():
 
 
 def test_a_long_pause_is_not_caught_up():
-    """After ten seconds of sleep it goes on with 50 ms."""
     pacer = Pacer(0.001, 0.0)
     assert pacer.steps_due(10.0) == 50
     assert pacer.steps_due(10.001) == 1
 
 
 def test_a_clock_that_stands_still_gives_no_steps():
-    """And never a negative number."""
     pacer = Pacer(0.001, 5.0)
     assert pacer.steps_due(5.0) == 0
     assert pacer.steps_due(4.0) == 0
 
 
 def test_it_says_to_which_time_it_has_come():
-    """Whole steps, and a pause that is not caught up is skipped."""
     pacer = Pacer(0.001, 1.0)
     assert pacer.simulated_to == 1.0
     pacer.steps_due(1.0104)

@@ -1,4 +1,4 @@
-"""What is said about wrong arguments: expected, got."""
+"""Errors of wrong arguments: expected and given values."""
 
 from dynamics_node import ArgumentError
 from dynamics_node.dynamics.arguments import check_link, gravity_vector, per_joint
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 
-def test_a_link_that_there_is_and_one_that_there_is_not():
+def test_an_unknown_link_is_refused_with_a_suggestion():
     check_link({'a': None}, 'a')
     with pytest.raises(
         ArgumentError, match=(r"^link: 'c' is not a link of the robot; expected one of a, b$")

@@ -1,4 +1,4 @@
-"""Batches: pieces, threads, answers put where one wants them."""
+"""Batches: pieces, threads, and results in given arrays."""
 
 from dynamics_node import ArgumentError, RobotModel, SingularMassMatrixError
 from dynamics_node.codegen import is_supported
@@ -60,7 +60,7 @@ def test_one_bad_state_spoils_no_other(model):
     np.testing.assert_allclose(G[others], expected[others], rtol=0, atol=1e-11)
 
 
-def test_the_answer_can_be_put_into_earlier_arrays(model):
+def test_results_can_be_written_to_given_arrays(model):
     q, qd, qdd = states(model, 40)
     for method, arguments in (
         (model.dynamics, (q, qd)),
@@ -119,8 +119,8 @@ def test_threads_are_a_number_of_at_least_one(model, threads, count):
         model.gravity_torque(states(model, count)[0], threads=threads)
 
 
-def test_a_singular_mass_matrix_is_refused_one_by_one_and_in_batches():
-    # Two joints about one axis with nothing between them: only their sum moves inertia.
+def test_a_singular_mass_matrix_is_refused_for_states_and_batches():
+    # Two joints about one axis with a massless link between them: only their sum moves inertia.
     text = random_urdf(5, joints=1, with_mimic=False, prismatic=0.0).replace(
         '</robot>',
         """

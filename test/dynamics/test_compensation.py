@@ -1,4 +1,4 @@
-"""The effort that compensates: the sum of the terms that are on, by the library's own methods."""
+"""The compensating effort: the sum of the enabled terms."""
 
 import itertools
 
@@ -20,7 +20,7 @@ def arm():
     'gravity, coriolis, friction', list(itertools.product((False, True), repeat=3))
 )
 @pytest.mark.parametrize('chosen', [None, (3, 0, 1)])
-def test_it_is_the_sum_of_its_terms(arm, chosen, gravity, coriolis, friction):
+def test_compensation_is_the_sum_of_its_terms(arm, chosen, gravity, coriolis, friction):
     q, qd = np.full(8, 0.3), np.linspace(-1.0, 1.0, 8)
     index = None if chosen is None else np.array(chosen)
     unit = Compensation(arm, index, gravity, coriolis, friction)
@@ -44,7 +44,7 @@ def test_an_unknown_velocity_counts_as_zero(arm):
     np.testing.assert_allclose(effort, arm.gravity_torque(q))
 
 
-def test_the_names_of_a_selection_lead_to_its_places(arm):
+def test_a_permutation_maps_names_to_places(arm):
     selection = JointSelection(arm, [arm.joint_names[2]])
     G, _ = Compensation(arm, selection.index).torques(np.zeros(8), np.zeros(8))
     assert G.shape == (1,)

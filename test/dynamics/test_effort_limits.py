@@ -1,4 +1,4 @@
-"""Which points and joints are over their limits."""
+"""Points and joints over their limits, and the largest payload."""
 
 from dynamics_node import ArgumentError, RobotModel
 from dynamics_node.dynamics import over_limit
@@ -19,17 +19,17 @@ def test_points_and_joints_over_their_limits_are_named():
     assert over.peak_effort.tolist() == [3.0, 5.0, 9.0]
 
 
-def test_an_effort_at_its_limit_is_within_it_and_the_next_number_is_not():
+def test_an_effort_at_its_limit_is_allowed_and_the_next_number_is_not():
     assert over_limit([[2.0], [-2.0]], [2.0]).points.tolist() == []
     assert over_limit([[2.0], [np.nextafter(-2.0, -3.0)]], [2.0]).points.tolist() == [1]
 
 
-def test_joints_without_a_limit_are_never_over_it():
+def test_joints_without_a_limit_are_never_over():
     over = over_limit([[1e300, 1.0]], [NAN, 2.0])
     assert over.points.tolist() == over.joints.tolist() == []
 
 
-def test_what_is_not_a_number_is_not_within_a_limit():
+def test_nan_is_over_every_limit():
     assert over_limit([[NAN]], [1.0]).points.tolist() == [0]
 
 
@@ -88,7 +88,7 @@ def arm():
 
 
 @pytest.mark.parametrize('angle', [0.0, 0.4, -1.2, 2.9])
-def test_a_pendulum_carries_what_its_torque_leaves(pendulum, angle):
+def test_a_pendulum_carries_the_remaining_torque(pendulum, angle):
     # cos q (M g l/2 + m g l) = limit, at the far end.
     mass, joint = pendulum.max_payload([angle], 'rod')
     assert mass == pytest.approx(
@@ -102,8 +102,8 @@ def test_a_pendulum_carries_what_its_torque_leaves(pendulum, angle):
     )
 
 
-def test_along_the_real_gravity_vector(pendulum):
-    # Mounted on a wall so that g lies along the axis: nothing pulls. Turned by 30 degrees about
+def test_payload_of_a_tilted_pendulum_follows_gravity(pendulum):
+    # Mounted on a wall, with g along the axis: no torque. Turned by 30 degrees about
     # the axis: as if the pendulum were elsewhere.
     wall = pendulum.with_gravity((0.0, G, 0.0)).max_payload([0.3], 'rod')
     assert (wall.mass, wall.joint) == (INF, -1)
@@ -133,8 +133,8 @@ def test_speeding_up_a_mast_takes_its_torque(lift):
     assert joint == 0
 
 
-def test_speed_counts():
-    # A slide on a turning mast holds what flies outwards: (M x + m X) w².
+def test_velocities_reduce_the_payload():
+    # A slide on a turning mast holds the centrifugal force (M x + m X) w².
     slide = RobotModel.from_urdf(
         LIFT.replace(
             '<axis xyz="0 0 1"/>\n<limit lower="0"', '<axis xyz="1 0 0"/>\n<limit lower="0"'
@@ -149,14 +149,14 @@ def test_speed_counts():
     assert slide.max_payload([0.2, position], 'pallet').mass == INF
 
 
-def test_an_axis_that_gravity_does_not_turn_is_no_limit_at_all(lift):
+def test_an_axis_along_gravity_does_not_limit_the_payload(lift):
     # Only rounding pulls at the mast. That must not become 1e17 kg.
     for angle in np.linspace(-3.0, 3.0, 200):
         result = lift.max_payload([angle, 0.7], 'pallet', effort_limits=[1e-9, NAN])
         assert (result.mass, result.joint) == (INF, -1)
 
 
-def test_a_payload_on_the_axis_is_no_load_for_it():
+def test_a_payload_on_the_joint_axis_is_unlimited():
     arm = RobotModel.from_urdf(ARM7)
     rng = np.random.default_rng(4)
     point = np.linalg.inv(arm.tree.links['shoulder'].placement) @ [0.0, 0.0, 0.2, 1.0]
@@ -167,7 +167,7 @@ def test_a_payload_on_the_axis_is_no_load_for_it():
 # What limits --------------------------------------------------------------------------------
 
 
-def test_over_a_limit_already_is_zero_and_the_joint_that_is_most_so(arm):
+def test_over_a_limit_it_is_zero_with_the_worst_joint(arm):
     q = np.array([0.0, 1.2, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0])
     torque = np.abs(arm.gravity_torque(q))
     limits = np.full(8, NAN)
@@ -191,17 +191,17 @@ def test_joints_without_limits_never_limit(arm):
     assert second.mass > first.mass and second.joint not in (first.joint, -1)
 
 
-def test_on_a_link_that_no_joint_moves_any_mass_will_do(arm):
+def test_a_fixed_link_has_unlimited_payload(arm):
     result = arm.max_payload(np.zeros(8), 'base', (1.0, 0.0, 0.0))
     assert (result.mass, result.joint) == (INF, -1)
 
 
-def test_a_robot_without_joints_carries_anything():
+def test_a_robot_without_joints_has_unlimited_payload():
     result = RobotModel.from_urdf('<robot name="r"><link name="a"/></robot>').max_payload([], 'a')
     assert (result.mass, result.joint) == (INF, -1)
 
 
-def test_more_limit_more_payload(arm):
+def test_a_higher_limit_allows_more_payload(arm):
     q = np.array([0.3, 1.2, 0.2, 1.0, 0.1, 1.0, 0.2, 0.0])
     less, more = (
         float(arm.max_payload(q, 'tool_center', effort_limits=factor * arm.effort_limits).mass)
@@ -243,7 +243,7 @@ def assert_at_the_limit(text, model, gravity, state, link, point):
 
 
 @given(seed=st.integers(0, 2**32 - 1), prismatic=st.sampled_from([0.3, 0.0, 1.0]))
-def test_pinocchio_is_at_its_limit_with_it_and_over_it_with_more(seed, prismatic):
+def test_in_pinocchio_the_largest_payload_reaches_the_limit(seed, prismatic):
     rng = np.random.default_rng(seed)
     text = random_urdf(seed, prismatic=prismatic).replace(
         'effort="90"', f'effort="{rng.uniform(5, 900)}"'
@@ -256,7 +256,7 @@ def test_pinocchio_is_at_its_limit_with_it_and_over_it_with_more(seed, prismatic
     assert_at_the_limit(text, model, gravity, state, link, rng.normal(0.0, 0.3, 3))
 
 
-def test_a_real_arm_on_a_slope_too():
+def test_arm7_under_tilted_gravity_reaches_its_limit():
     text, gravity = ARM7.read_text(), (3.0, -4.0, -8.0)
     model = RobotModel.from_urdf(text, gravity)
     rng = np.random.default_rng(6)
@@ -301,7 +301,7 @@ def chain_formula(oracle, model, q, link, gravity):
     return force.min() / np.linalg.norm(gravity)
 
 
-def test_upright_it_is_what_solvers_for_chains_say_and_tilted_it_is_not():
+def test_upright_it_agrees_with_chain_solvers_and_tilted_it_does_not():
     # As MoveIt's dynamics_solver::getMaxPayload for an arm on a level floor. (There gravity has to
     # be handed over pointing up: what lifts the load and what pulls at the arm would otherwise
     # have opposite signs in KDL.)
@@ -332,7 +332,7 @@ def test_a_batch_is_its_states_one_by_one_and_a_trajectory_its_least(arm):
     assert joint == result.joint[point]
 
 
-def test_axes_broadcast_and_no_state_is_no_answer(arm):
+def test_batch_axes_broadcast_and_an_empty_batch_has_no_least(arm):
     qd = np.random.default_rng(2).normal(size=(4, 8))
     result = arm.max_payload(np.full(8, 0.3), 'tool_center', qd=qd)
     assert result.mass.shape == (4,) and len(set(result.mass)) == 4
@@ -342,7 +342,7 @@ def test_axes_broadcast_and_no_state_is_no_answer(arm):
         none.least()
 
 
-def test_a_position_that_is_not_a_number_has_no_answer(arm):
+def test_a_nan_position_gives_nan(arm):
     q = np.zeros((3, 8))
     q[1, 2] = NAN
     result = arm.max_payload(q, 'tool_center')
@@ -354,7 +354,7 @@ def test_a_position_that_is_not_a_number_has_no_answer(arm):
 # Other properties of the model --------------------------------------------------------------
 
 
-def test_a_payload_of_the_model_makes_room_for_it(arm):
+def test_max_payload_replaces_the_payload_of_the_model(arm):
     q = np.array([0.3, 1.2, 0.2, 1.0, 0.1, 1.0, 0.2, 0.0])
     mass, joint = arm.max_payload(q, 'tool_center', (0.0, 0.1, 0.0))
     loaded = arm.with_payload('tool_center', float(mass), (0.0, 0.1, 0.0))
@@ -388,20 +388,18 @@ def test_rotors_take_their_share_of_an_acceleration(lift):
         (([0.0], 'rod'), {'effort_limits': [-1.0]}, 'effort limits: joint 0: expected at least 0'),
     ],
 )
-def test_wrong_input_is_answered_with_what_was_expected_and_what_came(
-    pendulum, arguments, options, text
-):
+def test_wrong_input_is_refused_with_expected_and_given_values(pendulum, arguments, options, text):
     with pytest.raises(ArgumentError, match=text):
         pendulum.max_payload(*arguments, **options)
 
 
 @pytest.mark.parametrize('gravity', [0.0, 1e-310])
-def test_where_nothing_has_weight_any_mass_will_do(pendulum, gravity):
+def test_without_gravity_the_payload_is_unlimited(pendulum, gravity):
     result = pendulum.with_gravity((0.0, 0.0, -gravity)).max_payload([0.3], 'rod')
     assert (result.mass, result.joint) == (INF, -1)
 
 
-def test_a_point_beyond_all_numbers_has_no_answer_and_no_warning(arm):
+def test_an_overflowing_point_gives_nan_without_a_warning(arm):
     # Warnings are errors here.
     result = arm.max_payload(np.zeros(8), 'hand', (1e160, 0.0, 0.0))
     assert np.isnan(result.mass) and result.joint == -1

@@ -1,4 +1,4 @@
-"""Robots where rounding hurts most: no NaN, and the error that docs/accuracy.md states."""
+"""Deliberately ill-conditioned robots: no NaN, and the errors stated in docs/accuracy.md."""
 
 from dynamics_node import RobotModel
 import numpy as np
@@ -27,7 +27,7 @@ def test_an_extreme_robot_keeps_its_digits(name):
 
 
 @pytest.mark.parametrize('name', ROBOTS)
-def test_nothing_of_an_extreme_robot_is_nan(name):
+def test_no_quantity_of_an_extreme_robot_is_nan(name):
     model = RobotModel.from_urdf(ROBOTS[name])
     n = len(model.joint_names)
     # Folded, straight, far out of all limits and at speeds that no motor reaches.

@@ -1,4 +1,4 @@
-"""Closed loop: an arm integrated with our forward dynamics keeps its energy, as MuJoCo has it."""
+"""Closed loop: an arm integrated with forward dynamics keeps its energy, as in MuJoCo."""
 
 from dynamics_node import RobotModel
 import numpy as np
@@ -21,14 +21,14 @@ def test_mujoco_accelerates_the_same_along_the_swing(name):
     assert swing(name).mujoco <= 1e-11
 
 
-def test_what_drifts_is_the_integrator():
+def test_the_drift_of_energy_comes_from_the_integrator():
     # Ten thousand times the tolerance: the drift grows with it, so little of it is ours.
     model = RobotModel.from_urdf(free_arm('UR5'))
     coarse = integrate(model.forward_dynamics, starting_position(model), tolerance=1e-8)
     assert energy_drift(model, coarse)[1] > 100 * swing('UR5').drift
 
 
-def test_the_drift_sees_a_wrong_coriolis_term():
+def test_a_wrong_coriolis_term_makes_the_energy_drift():
     model = RobotModel.from_urdf(free_arm('UR5'))
 
     def with_too_little_of_it(q, qd, tau):

@@ -23,7 +23,7 @@ INDEPENDENT = TWO_JOINTS.format(damping=0.4, mimic='')
 MIMIC = TWO_JOINTS.format(damping=0.4, mimic='<mimic joint="j" multiplier="-2" offset="1"/>')
 
 
-def test_it_is_that_of_the_urdf():
+def test_friction_comes_from_the_urdf():
     robot = RobotModel.from_urdf(INDEPENDENT)
     qd = np.array([0.5, -0.01])
     expected = [0.7 * 0.5 + 0.3 * np.tanh(0.5 / 0.05), 0.4 * -0.01 + 0.2 * np.tanh(-0.01 / 0.05)]
@@ -49,7 +49,7 @@ def test_a_leader_feels_the_friction_of_the_joint_that_mimics_it():
     assert robot.friction_torque([qd])[0] * qd == pytest.approx(power, rel=1e-14)
 
 
-def test_every_number_may_be_given_anew_and_the_others_stay():
+def test_each_friction_parameter_can_be_replaced_alone():
     robot = RobotModel.from_urdf(INDEPENDENT)
     qd = np.array([[0.5, -0.2], [0.0, 0.03]])
     other = robot.with_friction(coulomb=[1.0, 2.0]).with_friction(smoothing_velocity=0.1)
@@ -62,7 +62,7 @@ def test_every_number_may_be_given_anew_and_the_others_stay():
     assert other.with_gravity((0, 0, 0)).friction is other.friction
 
 
-def test_it_is_no_part_of_the_equation_of_motion():
+def test_friction_is_not_part_of_the_equation_of_motion():
     robot = RobotModel.from_urdf(INDEPENDENT)
     q, qd = np.zeros(2), np.ones(2)
     assert np.array_equal(
@@ -86,7 +86,7 @@ def test_wrong_numbers_are_refused(numbers, message):
         RobotModel.from_urdf(INDEPENDENT).with_friction(**numbers)
 
 
-def test_negative_friction_of_a_urdf_is_taken_for_zero_and_said():
+def test_negative_friction_of_a_urdf_becomes_zero_with_a_warning():
     robot = RobotModel.from_urdf(INDEPENDENT.replace('damping="0.7"', 'damping="-0.7"'))
     assert robot.friction.viscous.tolist() == [0.0, 0.4]
     assert any("joint 'j': damping is -0.7" in warning for warning in robot.warnings)
@@ -96,7 +96,7 @@ def test_negative_friction_of_a_urdf_is_taken_for_zero_and_said():
 
 
 @pytest.mark.parametrize('seed', range(4))
-def test_rotors_are_what_pinocchio_and_mujoco_call_armature(seed):
+def test_rotor_inertia_is_the_armature_of_pinocchio_and_mujoco(seed):
     text = random_urdf(seed, with_mimic=False)
     rng = np.random.default_rng(seed)
     plain = RobotModel.from_urdf(text)

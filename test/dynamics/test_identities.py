@@ -91,7 +91,7 @@ def test_the_coriolis_matrix_is_zero_at_rest_and_linear_in_velocity(seed):
 
 @on_random_trees
 @given(seeds)
-def test_doubling_all_masses_doubles_everything(seed):
+def test_doubling_all_masses_doubles_d_c_and_g(seed):
     model, q, qd = sample(seed)
     heavy = RobotModel.from_urdf(random_urdf(seed, mass_scale=2.0))
     for one, two in zip(model.dynamics(q, qd), heavy.dynamics(q, qd), strict=True):
@@ -123,7 +123,7 @@ def test_listing_joints_in_another_order_permutes_rows_and_columns(seed):
 
 @on_random_trees
 @given(seeds)
-def test_turning_base_and_gravity_together_changes_nothing(seed):
+def test_turning_base_and_gravity_together_changes_no_effort(seed):
     text = random_urdf(seed)
     model, q, qd = sample(seed)
     rpy = np.random.default_rng(seed).uniform(-3, 3, 3)

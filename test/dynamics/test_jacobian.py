@@ -1,4 +1,4 @@
-"""The Jacobian of any point, and where links are, against Pinocchio and finite differences."""
+"""Jacobians of points and link poses, against Pinocchio and finite differences."""
 
 from dynamics_node import ArgumentError, RobotModel
 import numpy as np
@@ -56,7 +56,7 @@ def test_public_robots(name, link):
     assert robot.link_pose(q, link) == pytest.approx(pose, abs=1e-13)
 
 
-def test_it_is_the_derivative_of_where_the_point_is():
+def test_the_jacobian_is_the_derivative_of_the_point():
     robot = RobotModel.from_urdf(random_urdf(3))
     q, _ = random_state(np.random.default_rng(0), robot)
     link, point, h = robot.link_names[-1], np.array([0.1, -0.2, 0.3]), 1e-6

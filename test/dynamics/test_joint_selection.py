@@ -1,4 +1,4 @@
-"""Joints by name: an order of one's own, and what is refused."""
+"""Selections of joints by name: order and errors."""
 
 import time
 
@@ -19,7 +19,7 @@ def refusal(names):
     return str(caught.value)
 
 
-def test_any_joints_in_any_order():
+def test_a_selection_of_any_joints_in_any_order():
     names = ARM.joint_names[3], ARM.joint_names[0]
     selection = JointSelection(ARM, names)
     assert selection.names == names
@@ -28,7 +28,7 @@ def test_any_joints_in_any_order():
     assert JointSelection(ARM).names == ARM.joint_names
 
 
-def test_unknown_names_and_names_twice_are_said_in_words():
+def test_unknown_and_repeated_names_are_refused_with_a_reason():
     message = refusal(['elbow_pitch', 'nose', 'elbow_pitch'])
     assert message == (
         "joints: 'nose' is not a joint that can be moved; 'elbow_pitch' is given "
@@ -36,7 +36,7 @@ def test_unknown_names_and_names_twice_are_said_in_words():
     )
 
 
-def test_what_a_terminal_would_obey_is_written_out():
+def test_control_characters_in_names_are_escaped():
     assert r"'\x1b[2J' is not a joint" in refusal(['\x1b[2J'])
 
 
@@ -49,7 +49,7 @@ def test_a_hundred_thousand_wrong_names_are_refused_at_once_and_in_short():
     assert len(message) < 1000
 
 
-def test_a_joint_that_follows_another_is_said_to_follow():
+def test_a_mimic_joint_is_named_with_its_leader():
     with pytest.raises(
         ArgumentError,
         match=r"'right_finger_slide' follows 'left_finger_slide': "
@@ -65,7 +65,7 @@ def difference(names):
     return str(caught.value)
 
 
-def test_a_permutation_that_is_none_is_refused_with_the_name_that_is_wrong():
+def test_an_invalid_permutation_is_refused_with_the_wrong_name():
     yaw, pitch, roll = ARM.joint_names[:3]
     expected = '; expected each of 3 joints once, or no name at all'
     assert difference([yaw, 'shoulder_pich', roll]) == (

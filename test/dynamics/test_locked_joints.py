@@ -1,7 +1,7 @@
-"""Forward dynamics of some joints, the others held, against closed form and Pinocchio."""
+"""Forward dynamics with locked joints, against Pinocchio."""
 
 from dynamics_node import RobotModel, SingularMassMatrixError
-from dynamics_node.dynamics import forward_dynamics_held
+from dynamics_node.dynamics import forward_dynamics_locked
 import numpy as np
 import pytest
 from support.pinocchio_oracle import PinocchioOracle
@@ -9,14 +9,14 @@ from support.robots import random_state, random_urdf
 
 
 @pytest.mark.parametrize('seed', range(5))
-def test_held_joints_do_not_accelerate_whatever_the_others_do(seed):
+def test_locked_joints_do_not_accelerate(seed):
     text = random_urdf(seed)
     model = RobotModel.from_urdf(text)
     rng = np.random.default_rng(seed)
     q, qd = random_state(rng, model)
     tau = rng.normal(size=q.size)
     index = rng.permutation(q.size)[: max(1, q.size // 2)]
-    qdd = forward_dynamics_held(model, index, q, qd, tau)
+    qdd = forward_dynamics_locked(model, index, q, qd, tau)
     held = np.setdiff1d(np.arange(q.size), index)
     assert not qdd[held].any()
     # The efforts of that motion are those given, where the joints are free.
@@ -24,16 +24,16 @@ def test_held_joints_do_not_accelerate_whatever_the_others_do(seed):
     assert judged[index] == pytest.approx(tau[index], abs=1e-10 * np.abs(judged).max())
 
 
-def test_all_joints_free_is_the_model_itself():
+def test_without_locked_joints_it_equals_forward_dynamics():
     model = RobotModel.from_urdf(random_urdf(2))
     q, qd = random_state(np.random.default_rng(2), model)
     every = np.arange(q.size)
     assert np.array_equal(
-        forward_dynamics_held(model, every, q, qd, q), model.forward_dynamics(q, qd, q)
+        forward_dynamics_locked(model, every, q, qd, q), model.forward_dynamics(q, qd, q)
     )
 
 
-def test_a_free_joint_that_moves_no_mass_is_refused():
+def test_a_free_joint_without_inertia_is_refused():
     text = (
         '<robot name="r"><link name="w"/><link name="a"/><link name="b"/>'
         '<joint name="j" type="continuous"><parent link="w"/><child link="a"/></joint>'
@@ -42,4 +42,4 @@ def test_a_free_joint_that_moves_no_mass_is_refused():
     )
     model, zeros = RobotModel.from_urdf(text), np.zeros(2)
     with pytest.raises(SingularMassMatrixError, match='of these joints is not positive'):
-        forward_dynamics_held(model, np.array([1]), zeros, zeros, zeros)
+        forward_dynamics_locked(model, np.array([1]), zeros, zeros, zeros)

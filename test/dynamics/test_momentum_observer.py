@@ -1,4 +1,4 @@
-"""The momentum observer finds what pushes a robot, and nothing where nothing does."""
+"""The momentum observer estimates external efforts, and zero without them."""
 
 import functools
 import math
@@ -75,7 +75,7 @@ def observe(observer, motion, chosen=slice(None)):
 
 @pytest.mark.parametrize('name', ROBOTS)
 @pytest.mark.parametrize('is_pushed', [True, False], ids=['pushed', 'not pushed'])
-def test_it_finds_what_pushes_a_moving_robot(name, is_pushed):
+def test_it_estimates_a_push_on_a_moving_robot(name, is_pushed):
     model, motions = moved(name, is_pushed)
     errors = []
     for motion in motions:
@@ -118,11 +118,11 @@ def simulate(model, text, seconds=0.5, step=1e-4):
     return Motion(*(np.array(column) for column in zip(*samples, strict=True)))
 
 
-def test_it_finds_a_push_in_a_simulation_of_mujoco_itself():
+def test_it_finds_a_push_in_a_mujoco_simulation():
     text = free_arm('arm7')
     model = RobotModel.from_urdf(text).with_friction(VISCOUS, 0.0)
     motion = simulate(model, text)
-    # A state at the begin of the push: what happens between two states is taken for constant.
+    # A state at the begin of the push: efforts count as constant between two states.
     begin = int(np.argmax(np.abs(motion.external).max(axis=1) > 0.0))
     chosen = np.cumsum(np.random.default_rng(2).integers(2, 9, 1300))
     errors = []
@@ -154,7 +154,7 @@ def laden():
 
 
 @pytest.mark.parametrize('unknown', ['payload', 'friction', 'rotors', 'nothing'])
-def test_what_the_model_does_not_know_counts_as_external(unknown):
+def test_effects_missing_from_the_model_count_as_external(unknown):
     model, motion = laden()
     if unknown != 'payload':
         model = model.with_payload('hand', **LOAD)
@@ -171,7 +171,7 @@ def test_what_the_model_does_not_know_counts_as_external(unknown):
 
 
 @given(gain=st.floats(0.1, 1e4), seed=st.integers(0, 1000))
-def test_a_step_appears_with_the_lag_of_first_order_whatever_the_steps_of_time(gain, seed):
+def test_a_step_appears_with_first_order_lag_for_any_time_steps(gain, seed):
     model = RobotModel.from_urdf(CARRIAGE)
     force, mass = 3.0, 2.0
     observer = MomentumObserver(model, gain)
@@ -181,7 +181,7 @@ def test_a_step_appears_with_the_lag_of_first_order_whatever_the_steps_of_time(g
     assert observer.observed == pytest.approx(0.2)
 
 
-def test_a_robot_at_rest_shows_what_its_motors_do_not_hold():
+def test_at_rest_the_estimate_is_the_missing_motor_effort():
     model = RobotModel.from_urdf(PENDULUM)
     held = model.gravity_torque([0.4])[0]
     observer = MomentumObserver(model, 50.0)
@@ -194,7 +194,7 @@ def test_a_robot_at_rest_shows_what_its_motors_do_not_hold():
 # A choice of joints --------------------------------------------------------------------------
 
 
-def test_chosen_joints_in_any_order_count_for_themselves():
+def test_selected_joints_in_any_order_are_independent():
     model, [motion, _] = moved('arm7', True)
     names = model.joint_names
     chosen = [5, 0, 3]
@@ -207,7 +207,7 @@ def test_chosen_joints_in_any_order_count_for_themselves():
     )
 
 
-def test_others_whose_velocity_is_not_known_stand_still():
+def test_unknown_velocities_of_other_joints_count_as_zero():
     model, [motion, _] = moved('arm7', True)
     chosen, others = [2, 1], [0, 3, 4, 5, 6, 7]
     unknown, resting = motion.qd.copy(), motion.qd.copy()
@@ -235,7 +235,7 @@ def carriage():
 
 
 @pytest.mark.parametrize('time', [0.1, 0.05, -1.0, 0.21, 1e9])
-def test_a_time_that_is_not_newer_or_much_newer_begins_anew(carriage, time):
+def test_a_time_that_does_not_increase_or_jumps_restarts_the_observer(carriage, time):
     assert carriage.update(time, [5.0], [2.0], [0.0]) == 0.0
     assert carriage.observed == 0.0
     # From there it goes on, and a carriage of constant speed is not pushed.
@@ -249,8 +249,8 @@ def test_the_longest_step_may_be_chosen():
 
 
 @pytest.mark.parametrize('is_pushed', [True, False], ids=['pushed', 'not pushed'])
-def test_another_model_makes_no_push_and_hides_none(is_pushed):
-    # What it carries is known from the middle on; what it knew before was another payload.
+def test_a_change_of_model_neither_adds_nor_hides_external_effort(is_pushed):
+    # The model has a wrong payload at first and the right one from the middle on.
     plain, motion = laden()
     right = plain.with_payload('hand', **LOAD).with_friction(*FRICTION).with_rotor_inertia(ROTORS)
     effort = motion.effort - (5.0 if is_pushed else 0.0)
@@ -285,7 +285,7 @@ def test_a_model_of_other_joints_is_refused(carriage):
         carriage.follow(RobotModel.from_urdf(PENDULUM))
 
 
-def test_it_begins_anew_when_it_is_told_to(carriage):
+def test_reset_restarts_the_observer(carriage):
     carriage.reset()
     assert carriage.estimate == 0.0 and carriage.observed == 0.0
     assert carriage.update(0.11, [9.0], [9.0], [9.0]) == 0.0
@@ -302,21 +302,21 @@ def test_it_begins_anew_when_it_is_told_to(carriage):
     ],
     ids=['position', 'velocity', 'effort', 'infinite', 'time'],
 )
-def test_what_is_not_finite_is_not_remembered(carriage, state):
+def test_a_nonfinite_state_restarts_the_observer(carriage, state):
     assert np.isnan(carriage.update(*state)).all()
     assert carriage.update(0.12, [0.0], [0.0], [0.0]) == 0.0
     assert carriage.observed == 0.0
 
 
-def test_an_estimate_that_is_not_finite_is_not_remembered(carriage):
-    # The momentum is a number; what changes it within a nanosecond is none.
+def test_a_nonfinite_estimate_restarts_the_observer(carriage):
+    # The momentum is finite; its rate over a nanosecond overflows.
     assert np.isnan(carriage.update(0.1 + 1e-9, [0.0], [1e300], [0.0])).all()
     assert np.isfinite(carriage.estimate).all() and carriage.observed == 0.0
     assert carriage.update(0.11, [0.0], [0.0], [0.0]) == 0.0
     assert carriage.update(0.12, [0.0], [0.0], [0.0]) == 0.0
 
 
-def test_an_estimate_that_was_handed_out_is_never_changed(carriage):
+def test_a_returned_estimate_is_never_changed(carriage):
     before = carriage.estimate
     kept = before.copy()
     carriage.update(0.11, [0.0], [0.0], [0.0])
@@ -357,12 +357,12 @@ def test_wrong_arguments_are_refused_with_the_reason(arguments, message):
         ([0.0], [0.0], [], r'effort: expected shape \(1,\), one state of the chosen joints, got'),
     ],
 )
-def test_wrong_shapes_are_refused_and_nothing_is_forgotten(carriage, q, qd, effort, message):
+def test_wrong_shapes_are_refused_and_the_state_stays(carriage, q, qd, effort, message):
     before = carriage.estimate
     with pytest.raises(ArgumentError, match=message):
         carriage.update(0.11, q, qd, effort)
     assert carriage.estimate is before
 
 
-def test_it_is_there_without_asking_for_its_file():
+def test_the_observer_is_exported_by_the_package():
     assert dynamics_node.MomentumObserver is MomentumObserver

@@ -1,4 +1,4 @@
-"""A payload on any link, against Pinocchio and MuJoCo, which see it as one more link."""
+"""A payload on any link, against Pinocchio and MuJoCo with an additional link."""
 
 from dynamics_node import ArgumentError, InertiaError, RobotModel
 import numpy as np
@@ -27,7 +27,7 @@ def assert_agrees(text, link, body, gravity, seed):
 
 
 @pytest.mark.parametrize('seed', range(8))
-def test_random_trees_carry_it_on_a_random_link(seed):
+def test_a_payload_on_a_random_link_of_random_trees(seed):
     rng = np.random.default_rng(100 + seed)
     text = random_urdf(seed)
     links = RobotModel.from_urdf(text).link_names
@@ -43,13 +43,13 @@ def test_random_trees_carry_it_on_a_random_link(seed):
         ('kinova_description/robots/kinova.urdf', 'j2s6s200_link_finger_1'),
     ],
 )
-def test_public_robots_carry_it_at_the_tool(name, link):
+def test_a_payload_at_the_tool_of_public_robots(name, link):
     body = random_body(np.random.default_rng(1))
     # On the ceiling, a little askew.
     assert_agrees(public_robot(name).read_text(), link, body, (0.5, 1.0, 9.7), 3)
 
 
-def test_a_mass_on_a_lever_weighs_what_the_textbook_says():
+def test_a_mass_on_a_lever_adds_the_textbook_torque():
     text = (
         '<robot name="r"><link name="world"/><link name="arm"/><joint name="j" '
         'type="continuous"><parent link="world"/><child link="arm"/><axis xyz="0 -1 0"/>'
@@ -65,7 +65,7 @@ def test_a_mass_on_a_lever_weighs_what_the_textbook_says():
     assert on_wall.payload is robot.payload
 
 
-def test_without_mass_the_robot_is_what_it_was_to_the_last_bit():
+def test_a_payload_of_zero_mass_changes_no_bit():
     robot = RobotModel.from_urdf(ARM7)
     link, states = 'hand', np.random.default_rng(1).uniform(-2.0, 2.0, (50, 8))
     before = robot.dynamics(states, states)
@@ -79,7 +79,7 @@ def test_without_mass_the_robot_is_what_it_was_to_the_last_bit():
         assert not np.array_equal(old, other)
 
 
-def test_another_payload_takes_the_place_of_the_first():
+def test_a_second_payload_replaces_the_first():
     robot = RobotModel.from_urdf(ARM7)
     q = np.linspace(-1.0, 1.0, 8)
     moved = robot.with_payload('hand', 3.0).with_payload('forearm', 1.0, (0.0, 0.1, 0.0))
@@ -89,7 +89,7 @@ def test_another_payload_takes_the_place_of_the_first():
     assert moved.moving_mass == pytest.approx(robot.moving_mass + 1.0)
 
 
-def test_on_the_base_it_has_no_effect():
+def test_a_payload_on_the_base_has_no_effect():
     robot = RobotModel.from_urdf(ARM7)
     loaded = robot.with_payload(robot.tree.root, 5.0)
     q = np.linspace(-1.0, 1.0, 8)
@@ -97,7 +97,7 @@ def test_on_the_base_it_has_no_effect():
     assert loaded.payload.mass == 5.0
 
 
-def test_a_payload_that_is_no_real_body_is_refused():
+def test_a_physically_impossible_payload_is_refused():
     robot = RobotModel.from_urdf(ARM7)
     with pytest.raises(InertiaError, match='mass is -1 kg'):
         robot.with_payload('hand', -1.0)
@@ -120,12 +120,12 @@ def test_a_payload_that_is_no_real_body_is_refused():
         (('hand', 1.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), r'payload inertia: .* \(3, 3\)'),
     ],
 )
-def test_wrong_arguments_are_refused_in_words(arguments, message):
+def test_wrong_arguments_are_refused_with_a_message(arguments, message):
     with pytest.raises(ArgumentError, match=message):
         RobotModel.from_urdf(ARM7).with_payload(*arguments)
 
 
-def test_a_center_of_mass_beyond_all_numbers_is_refused_in_words():
+def test_an_overflowing_center_of_mass_is_refused_with_a_reason():
     # Warnings are errors here: numpy must not warn of the overflow.
-    with pytest.raises(ArgumentError, match=r'second moments that are finite, .*1e\+200'):
+    with pytest.raises(ArgumentError, match=r'finite second moments, .*1e\+200'):
         RobotModel.from_urdf(ARM7).with_payload('hand', 1.0, (1e200, 0.0, 0.0))

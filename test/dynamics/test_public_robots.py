@@ -1,4 +1,4 @@
-"""Every URDF of example-robot-data by four routes: ours, Pinocchio, MuJoCo and 80 bits."""
+"""Every URDF of example-robot-data: this library, Pinocchio, MuJoCo, 80-bit arithmetic."""
 
 from dynamics_node import RobotModel, SingularMassMatrixError
 import numpy as np
@@ -24,12 +24,12 @@ COMPARED = [name for name in NAMES if name not in LEFT_OUT]
 # base frame, loses the digits of light links far from the base.
 PINOCCHIO_LOSES = {('tiago_description/robots/tiago_no_hand.urdf', 'C')}
 
-# Efforts cause no definite acceleration where a joint moves nothing that has inertia.
+# Accelerations are undefined where a joint moves no inertia.
 SINGULAR = {'romeo_description/urdf/romeo.urdf': ('LHand', 'RHand')}
 
 
 def quantities(name):
-    """Return what is compared on a robot: all, but for forward dynamics where D is singular."""
+    """Return the quantities to compare: all, without forward dynamics where D is singular."""
     return {quantity for quantity in QUANTITIES if quantity != 'FD' or name not in SINGULAR}
 
 
@@ -42,7 +42,7 @@ def test_every_robot_is_compared_or_left_out_with_a_reason():
 
 
 @pytest.mark.parametrize('name', COMPARED)
-def test_a_public_robot_agrees_with_arithmetic_of_80_bits(name):
+def test_a_public_robot_agrees_with_80_bit_arithmetic(name):
     errors = compare(name).errors['library', 'exact']
     assert errors.keys() == quantities(name)
     for quantity, error in errors.items():
@@ -59,7 +59,7 @@ def test_a_public_robot_agrees_with_pinocchio(name):
 
 
 @pytest.mark.parametrize('name, quantity', PINOCCHIO_LOSES)
-def test_where_pinocchio_disagrees_it_is_pinocchio_that_loses_digits(name, quantity):
+def test_where_pinocchio_disagrees_pinocchio_loses_digits(name, quantity):
     errors = compare(name).errors
     assert errors['pinocchio', 'exact'][quantity] > BOUND
     assert errors['library', 'exact'][quantity] < 0.1 * errors['pinocchio', 'exact'][quantity]
@@ -74,7 +74,7 @@ def test_a_public_robot_agrees_with_mujoco(name):
 
 
 @pytest.mark.parametrize('name', SINGULAR)
-def test_a_joint_that_moves_nothing_is_said_instead_of_solved(name):
+def test_a_joint_without_inertia_is_reported_not_solved(name):
     model = RobotModel.from_urdf(public_robot(name))
     idle = [model.joint_names.index(joint) for joint in SINGULAR[name]]
     q = np.ones(len(model.joint_names))

@@ -1,4 +1,4 @@
-"""Random trees by four routes: ours, Pinocchio, MuJoCo and 80 bits; everything they can say."""
+"""Random trees, all quantities: this library, Pinocchio, MuJoCo, 80-bit arithmetic."""
 
 from dynamics_node import RobotModel
 from hypothesis import given, settings
@@ -15,8 +15,8 @@ BOUNDS = {'exact': 1e-11, 'pinocchio': 1e-11, 'mujoco': 1e-9}
 @given(seed=st.integers(0, 2**32 - 1), prismatic=st.sampled_from([0.3, 0.0, 1.0]))
 def test_all_routes_agree_on_a_random_tree(seed, prismatic):
     text = random_urdf(seed, prismatic=prismatic)
-    found = Routes(text, RobotModel.from_urdf(text)).compare(np.random.default_rng(seed))
+    result = Routes(text, RobotModel.from_urdf(text)).compare(np.random.default_rng(seed))
     for judge, bound in BOUNDS.items():
-        errors = found.errors['library', judge]
+        errors = result.errors['library', judge]
         assert set(errors) == set(QUANTITIES)
         assert {name: error for name, error in errors.items() if not error <= bound} == {}, judge

@@ -1,6 +1,7 @@
-"""The library as a user meets it: names, shapes, batches, errors."""
+"""The public library: names, shapes, batches, errors."""
 
 from dynamics_node import ArgumentError, RobotDescriptionError, RobotModel, SingularMassMatrixError
+from dynamics_node.codegen import worker
 import numpy as np
 import pytest
 from support.robots import PENDULUM, random_state, random_urdf
@@ -115,7 +116,7 @@ def test_inverse_dynamics_is_the_equation_of_motion(robot):
         (lambda r: r.with_gravity([0, 0, np.nan]), r'gravity: expected three finite numbers'),
     ],
 )
-def test_a_wrong_argument_is_an_error_that_says_what_was_expected(robot, call, message):
+def test_a_wrong_argument_is_refused_with_the_expected_form(robot, call, message):
     with pytest.raises(ArgumentError, match=message):
         call(robot)
 
@@ -161,5 +162,20 @@ def test_a_missing_file_is_named():
         RobotModel.from_urdf('no_such.urdf')
 
 
-def test_repr_says_what_the_robot_is(robot):
+def test_repr_describes_the_robot(robot):
     assert repr(robot).startswith('RobotModel(5 joints, ')
+
+
+def test_without_compile_the_numbers_are_equal_and_no_compiler_starts(monkeypatch):
+    started = []
+    monkeypatch.setattr(worker, 'start', lambda packed: started.append(packed))
+    text = random_urdf(4711, joints=4)
+    model = RobotModel.from_urdf(text, (0.0, 1.0, -9.0), compile=False)
+    q = np.random.default_rng(1).normal(size=(30_000, len(model.joint_names)))
+    for _ in range(3):
+        answer = model.gravity_torque(q)
+        model.with_payload(model.tip_link, 2.0).gravity_torque(q)
+    assert not started
+    assert not model.specialize() and not model.is_specialized
+    expected = RobotModel.from_urdf(text, (0.0, 1.0, -9.0)).gravity_torque(q)
+    np.testing.assert_allclose(answer, expected, atol=1e-10)

@@ -36,7 +36,7 @@ def scipys(time, values, begin=None, end=None):
 
 
 @pytest.mark.parametrize('count', [2, 3, 4, 5, 6, 50])
-def test_nothing_given_is_the_spline_that_is_not_a_knot_at_the_ends(count):
+def test_without_derivatives_it_is_the_not_a_knot_spline(count):
     time, values, slopes = points(count, count)
     np.testing.assert_allclose(
         ours(time, values, slopes), scipys(time, values), rtol=1e-9, atol=1e-9
@@ -68,7 +68,7 @@ def test_a_slope_at_one_end_clamps_that_end(count):
     )
 
 
-def test_a_slope_in_the_middle_makes_two_splines_that_do_not_know_of_each_other():
+def test_a_slope_in_the_middle_separates_two_independent_splines():
     time, values, slopes = points(1, 20)
     actual = ours(time, values, slopes, 0, 7, 19)
     left = scipys(time[:8], values[:8], slopes[0], slopes[7])
@@ -76,7 +76,7 @@ def test_a_slope_in_the_middle_makes_two_splines_that_do_not_know_of_each_other(
     np.testing.assert_allclose(actual, np.concatenate((left, right[1:])), rtol=1e-9, atol=1e-9)
 
 
-def test_slopes_that_are_given_stay_bit_for_bit():
+def test_given_slopes_are_kept_bit_for_bit():
     time, values, slopes = points(2, 9)
     given = (0, 3, 4, 8)
     np.testing.assert_array_equal(
@@ -102,7 +102,7 @@ def test_slopes_that_are_given_stay_bit_for_bit():
         (5, (0, 4), 3),
     ],
 )
-def test_polynomials_come_back_exactly_up_to_the_degree_that_the_data_fix(count, given, degree):
+def test_polynomials_are_reproduced_up_to_the_degree_of_the_data(count, given, degree):
     time, _, _ = points(count, count)
     polynomial = np.polynomial.Polynomial(np.arange(1.0, degree + 2.0))
     values, slopes = polynomial(time)[:, None], polynomial.deriv()(time)[:, None]
@@ -121,7 +121,7 @@ def test_steps_of_very_different_lengths_keep_their_digits():
     np.testing.assert_allclose(ours(time, values, slopes), slopes, rtol=1e-8, atol=1e-8)
 
 
-def test_no_joints_are_no_joints():
+def test_a_robot_without_joints_has_an_empty_estimate():
     assert ours(np.arange(4.0), np.zeros((4, 0)), np.zeros((4, 0))).shape == (4, 0)
 
 
@@ -150,8 +150,8 @@ def only(values, *points):
     return result
 
 
-def test_what_is_given_stays_bit_for_bit_and_nothing_is_said():
-    # Times that do not increase: nobody needs them here.
+def test_given_derivatives_are_kept_bit_for_bit_without_a_message():
+    # With all derivatives given, times need not increase.
     time = np.array([0.0, 0.0, 0.0])
     motion = complete_trajectory(time, *sines(np.arange(3.0)))
     for actual, expected in zip(
@@ -163,7 +163,7 @@ def test_what_is_given_stays_bit_for_bit_and_nothing_is_said():
     assert motion.obtained == ''
 
 
-def test_positions_alone_give_the_spline_that_assumes_nothing_about_the_ends():
+def test_positions_alone_give_a_spline_with_free_ends():
     time = np.cumsum(np.random.default_rng(1).uniform(0.1, 1.0, 30))
     q, _, _ = sines(time)
     motion = complete_trajectory(time, q)
@@ -188,7 +188,7 @@ def test_velocities_at_the_ends_are_the_ends_of_the_spline(ends):
     assert motion.obtained.startswith(f'velocities of {10 - len(ends)} of 10 points were not')
 
 
-def test_accelerations_of_velocities_do_not_look_at_positions():
+def test_accelerations_from_velocities_ignore_positions():
     # Rounded as in a file: the second derivatives of positions would be off by 40 rad/s².
     time = np.linspace(0.0, 1.0, 1001)
     q, qd, qdd = sines(time)
@@ -201,7 +201,7 @@ def test_accelerations_of_velocities_do_not_look_at_positions():
     assert motion.obtained == f'accelerations were not given: the slopes of a {VELOCITIES}'
 
 
-def test_points_without_velocities_and_accelerations_are_filled_in_between():
+def test_missing_derivatives_between_points_are_filled():
     time = np.linspace(0.0, 2.0, 41)
     q, qd, qdd = sines(time)
     motion = complete_trajectory(time, q, without(qd, 3, 4, 20), without(qdd, 0, 7, 40))
@@ -244,7 +244,7 @@ def test_errors_shrink_with_the_order_of_the_spline(which, order):
     np.testing.assert_allclose(orders(which), order, atol=0.15)
 
 
-def test_one_point_rests():
+def test_one_point_is_at_rest():
     motion = complete_trajectory([2.0], [[0.1, 0.2]])
     assert motion.velocities.tolist() == motion.accelerations.tolist() == [[0.0, 0.0]]
     assert motion.obtained.count('zero, the only point is at rest') == 2
@@ -276,7 +276,7 @@ def test_three_points_are_a_parabola_and_clamped_ends_a_spline():
     np.testing.assert_allclose(clamped.accelerations[:, 0], spline(time, 2), atol=1e-12)
 
 
-def test_the_caller_keeps_arrays_of_his_own():
+def test_arrays_of_the_caller_are_not_kept():
     time, q, qd = np.arange(4.0), np.ones((4, 1)), np.full((4, 1), np.nan)
     motion = complete_trajectory(time, q, qd)
     assert np.isnan(qd).all() and q.flags.writeable and time.flags.writeable
@@ -288,7 +288,7 @@ def test_the_caller_keeps_arrays_of_his_own():
 
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(1, 12), joints=st.integers(0, 3))
 def test_any_pattern_of_gaps_reproduces_a_parabola(seed, count, joints):
-    # A parabola is its own spline, whatever is missing: but its data must fix it, so three
+    # A parabola is its own spline for any missing values: but its data must fix it, so three
     # points, or some velocity.
     rng = np.random.default_rng(seed)
     time = rng.normal() + np.cumsum(rng.uniform(0.1, 1.0, count))
@@ -345,7 +345,7 @@ def test_efforts_of_known_derivatives_are_inverse_dynamics():
     )
 
 
-def test_a_swinging_pendulum_needs_the_torque_of_the_recursive():
+def test_a_swinging_pendulum_needs_the_closed_form_torque():
     model = RobotModel.from_urdf(ARM7.with_name('pendulum.urdf'))
     M, length, radius, g = 3.0, 0.7, 0.05, 9.81
     time = np.linspace(0.0, 2.0, 201)
@@ -373,7 +373,10 @@ NAN, INF = float('nan'), float('inf')
             ([0, 1], [1.0, 2.0]),
             r'positions: expected shape \(2, n\), one row per time, got \(2,\)',
         ),
-        (([0, 1], [[1.0], [1.0, 2.0]]), 'positions: expected numbers, as many for each point'),
+        (
+            ([0, 1], [[1.0], [1.0, 2.0]]),
+            'positions: expected numbers, the same number for each point',
+        ),
         (([0, 1], [['a'], ['b']]), 'positions: expected numbers'),
         (([0, NAN], [[1.0], [2.0]]), 'time: point 1: expected a finite number, got nan'),
         (
@@ -406,7 +409,7 @@ NAN, INF = float('nan'), float('inf')
         ),
     ],
 )
-def test_wrong_input_is_answered_with_what_was_expected_and_what_came(arguments, text):
+def test_wrong_input_is_refused_with_expected_and_given_values(arguments, text):
     with pytest.raises(ArgumentError, match=text):
         complete_trajectory(*arguments)
 

@@ -1,4 +1,4 @@
-"""The judgment on pseudo-inertia matrices: which violations are found and how they are named."""
+"""Physical consistency of pseudo-inertia matrices: violations and their messages."""
 
 from dynamics_node import ArgumentError, InertiaError
 from dynamics_node.inertia import (
@@ -57,7 +57,7 @@ def test_asymmetry_and_nan_are_named():
 
 
 @given(st.integers(0, 2**32 - 1))
-def test_the_verdict_does_not_depend_on_the_frame(seed):
+def test_the_result_does_not_depend_on_the_frame(seed):
     rng = np.random.default_rng(seed)
     transform = np.eye(4)
     transform[:3, :3] = rotation_from_rpy(rng.uniform(-3, 3, 3))

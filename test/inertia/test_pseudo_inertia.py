@@ -1,4 +1,4 @@
-"""J: built, taken apart, moved and added."""
+"""Pseudo-inertia matrices: built, decomposed, transformed and added."""
 
 from dynamics_node import ArgumentError
 from dynamics_node.inertia import (
@@ -43,7 +43,7 @@ def test_products_of_inertia_change_sign_between_tensor_and_planar_moments():
     assert planar_moments(TENSOR)[0, 1] == -TENSOR[0, 1]
 
 
-def test_what_goes_into_a_pseudo_inertia_comes_out_again():
+def test_mass_com_and_tensor_are_recovered():
     matrix = pseudo_inertia(2.5, COM, TENSOR)
     mass, com = mass_and_com(matrix)
     assert mass == 2.5
@@ -99,7 +99,7 @@ def test_two_halves_of_a_cylinder_are_the_cylinder():
     )
 
 
-def test_nothing_combined_is_zero():
+def test_the_sum_of_no_bodies_is_zero():
     np.testing.assert_array_equal(combine([]), np.zeros((4, 4)))
 
 
@@ -118,6 +118,6 @@ def test_a_body_without_mass_has_its_center_at_the_origin():
         (lambda: transform_pseudo_inertia(np.eye(4), np.eye(3)), r'transform: expected shape'),
     ],
 )
-def test_a_wrong_shape_is_an_error_that_says_what_was_expected(call, message):
+def test_a_wrong_shape_is_refused_with_the_expected_one(call, message):
     with pytest.raises(ArgumentError, match=message):
         call()

@@ -1,4 +1,4 @@
-"""The closed form is the textbook: element by element, compiled and interpreted."""
+"""The recursion is the textbook: element by element, compiled and interpreted."""
 
 import os
 import subprocess
@@ -18,7 +18,7 @@ RELATIVE = 1e-12
 
 @settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_the_recursive_is_the_textbook_on_random_trees(seed):
+def test_the_recursion_agrees_with_the_textbook_on_random_trees(seed):
     model = RobotModel.from_urdf(random_urdf(seed))
     q, qd = random_state(np.random.default_rng(seed), model)
     expected = (

@@ -1,10 +1,9 @@
-"""The tree of moving bodies: lumping, order, mimic, and where every link went."""
+"""The tree of moving bodies: lumping, order, mimic joints, and the place of every link."""
 
 from dynamics_node import RobotDescriptionError
 from dynamics_node.inertia import combine
 from dynamics_node.model import build_tree
 from dynamics_node.urdf import read_urdf
-from dynamics_node.urdf.inertial import link_pseudo_inertia
 import numpy as np
 import pytest
 from support.robots import random_urdf
@@ -53,7 +52,7 @@ def test_a_body_is_the_sum_of_its_links():
     tree = build_tree(description)
     for body in range(len(tree.moving_joint_names)):
         parts = [
-            (link_pseudo_inertia(link.inertial), tree.links[link.name].placement)
+            (link.inertial.pseudo_inertia, tree.links[link.name].placement)
             for link in description.links
             if link.inertial and tree.links[link.name].body == body
         ]
@@ -93,13 +92,34 @@ def test_a_moving_body_without_mass_is_listed():
     assert not any('without mass' in warning for warning in warnings)
 
 
-def test_a_long_chain_does_not_meet_the_recursion_limit():
+def test_a_chain_longer_than_the_recursion_limit_is_built():
     tree = chain(*[('revolute' if i % 100 == 0 else 'fixed', '') for i in range(999)])
     assert len(tree.moving_joint_names) == 10
 
 
-def test_mimic_joints_that_multiply_beyond_all_robots_are_refused():
+def test_products_of_mimic_multipliers_above_1e30_are_refused():
     leader, follower = ('revolute', ''), ('revolute', 'joint="j0" multiplier="1e20"')
     chain(leader, follower, ('revolute', 'joint="j1" multiplier="1e10"'))
     with pytest.raises(RobotDescriptionError, match=r'joint j2: multiplier .* most 1e.30, got'):
         chain(leader, follower, ('revolute', 'joint="j1" multiplier="1e20"'))
+
+
+def test_joint_types_and_supporting_joints_of_a_branching_robot_with_mimic_joints():
+    description = read_urdf(random_urdf(3, joints=8))
+    tree = build_tree(description)
+    joint_of = {joint.child: joint for joint in description.joints}
+    for name, is_prismatic in zip(tree.moving_joint_names, tree.is_prismatic, strict=True):
+        [kind] = [joint.kind for joint in description.joints if joint.name == name]
+        assert is_prismatic == (kind == 'prismatic')
+    by_name = {joint.name: joint for joint in description.joints}
+    for link in tree.links:
+        leaders, end = set(), link
+        while end in joint_of:
+            joint = joint_of[end]
+            end = joint.parent
+            while joint.mimic:
+                joint = by_name[joint.mimic.leader]
+            leaders |= {joint.name} if joint.is_movable else set()
+        assert tree.supporting_joints(link) == sorted(map(tree.joint_names.index, leaders))
+    with pytest.raises(KeyError):
+        tree.supporting_joints('nothing')

@@ -37,17 +37,17 @@ def end_of(source):
         ('talos_data/robots/talos_left_arm.urdf', 'gripper_left_inner_single_link'),
     ],
 )
-def test_public_arms_carry_with_their_tool_and_no_finger(robot, link):
+def test_the_tip_of_public_arms_is_the_tool_and_no_finger(robot, link):
     assert end_of(public_robot(robot)) == link
 
 
-def test_our_own_arms():
+def test_the_tip_of_the_arms_in_this_repository():
     assert end_of(ARM7) == 'tool_center'
     assert end_of(arm()) == 'gripper'
     assert end_of(pendulum()) == 'rod'
 
 
-def test_a_robot_that_does_not_move_has_its_root():
+def test_the_tip_without_movable_joints_is_the_root():
     assert end_of('<robot name="a"><link name="stone"/></robot>') == 'stone'
 
 
@@ -59,7 +59,7 @@ def test_a_camera_on_the_hand_is_no_tool():
     assert end_of(arm().replace('</robot>', camera)) == 'gripper'
 
 
-def test_a_weightless_arm_ends_before_its_fingers_too():
+def test_an_arm_without_masses_ends_before_its_fingers():
     robot = ElementTree.fromstring(public_robot('panda_description/urdf/panda.urdf').read_text())
     for link in robot.findall('link'):
         for inertial in link.findall('inertial'):
@@ -67,7 +67,7 @@ def test_a_weightless_arm_ends_before_its_fingers_too():
     assert end_of(ElementTree.tostring(robot, encoding='unicode')) == 'panda_hand_tcp'
 
 
-def test_fingers_that_are_fixed_to_a_wrist_make_it_no_finger():
+def test_a_wrist_with_fixed_fingers_is_no_finger():
     robot = ElementTree.fromstring(public_robot('panda_description/urdf/panda.urdf').read_text())
     for joint in robot.findall('joint'):
         if 'finger' in joint.get('name'):

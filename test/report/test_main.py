@@ -4,10 +4,11 @@ import io
 import json
 import os
 from pathlib import Path
+import pty
 import subprocess
 import sys
 
-from dynamics_node.report.__main__ import main
+from dynamics_node.report.__main__ import main, parse
 import pytest
 from support.arms import arm, changed
 from support.robots import ARM7
@@ -110,8 +111,8 @@ def test_what_cannot_be_read_is_one_clear_error(robot, capsys, text, words):
     'options, words',
     [
         (
-            ['--payload-link', 'nobody'],
-            "link: 'nobody' is not a link of the robot; expected one of base, link1",
+            ['--payload-link', 'unknown'],
+            "link: 'unknown' is not a link of the robot; expected one of base, link1",
         ),
         (['--samples', '0'], 'samples: expected 1 to'),
         (['--seed', '-1'], 'seed: expected'),
@@ -122,7 +123,7 @@ def test_wrong_values_say_what_was_expected(robot, capsys, options, words):
     assert words in capsys.readouterr().err
 
 
-def test_a_folder_is_no_robot(tmp_path, capsys):
+def test_a_folder_is_not_a_urdf_file(tmp_path, capsys):
     assert main([str(tmp_path)]) == 2
     assert 'which is a folder' in capsys.readouterr().err
 
@@ -162,7 +163,7 @@ def test_options_reach_the_report(robot, capsys):
     assert (plain['payload']['link'], plain['payload']['point']) == ('link4', [0.0, 0.0, 0.1])
 
 
-def test_a_page_is_written_and_said(robot, tmp_path, capsys):
+def test_a_page_is_written_and_its_path_printed(robot, tmp_path, capsys):
     page = tmp_path / 'page.html'
     assert main([robot(arm()), '--json', '--samples', '50', '--html', str(page)]) == 0
     printed = capsys.readouterr()
@@ -181,7 +182,7 @@ def refusing(*names):
         f'        if name.split(".")[0] in {names!r}:\n'
         '            raise ModuleNotFoundError(f"No module named {name!r}", name=name)\n'
         'sys.meta_path.insert(0, Refuse())\n'
-        'from dynamics_node.report.__main__ import main\n'
+        'from dynamics_node.report.__main__ import main, parse\n'
         'sys.exit(main())\n'
     )
 
@@ -199,6 +200,7 @@ def test_it_works_where_no_ros_is_installed():
             'mujoco',
             'matplotlib',
             'plotly',
+            'jinja2',
         ),
     )
     assert (answer.returncode, answer.stderr) == (0, '')
@@ -208,9 +210,13 @@ def test_it_works_where_no_ros_is_installed():
 def test_what_is_not_installed_is_named_with_what_to_type(tmp_path):
     answer = run(ARM7, '--samples', 10, code=refusing('rich'))
     assert answer.returncode == 2 and 'pip install rich; or use --json' in answer.stderr
-    assert run(ARM7, '--samples', 10, '--json', code=refusing('rich', 'plotly')).returncode == 0
-    answer = run(ARM7, '--samples', 10, '--html', tmp_path / 'p.html', code=refusing('plotly'))
-    assert answer.returncode == 2 and 'pip install plotly' in answer.stderr
+    assert (
+        run(ARM7, '--samples', 10, '--json', code=refusing('rich', 'plotly', 'jinja2')).returncode
+        == 0
+    )
+    for package in ('plotly', 'jinja2'):
+        answer = run(ARM7, '--samples', 10, '--html', tmp_path / 'p.html', code=refusing(package))
+        assert answer.returncode == 2 and 'pip install jinja2 plotly' in answer.stderr
 
 
 def test_it_can_be_piped_into_head_and_into_a_file_of_another_encoding():
@@ -261,6 +267,81 @@ def test_it_reads_a_pipe_that_has_a_path(robot):
     assert 'arm: usable' in answer.stdout
 
 
-def test_no_name_is_no_robot(capsys):
+def test_an_empty_path_is_refused(capsys):
     assert main(['']) == 2
-    assert "got '', which is no name" in capsys.readouterr().err
+    assert "got '', which is empty" in capsys.readouterr().err
+
+
+def test_defaults():
+    options = parse(['a.urdf'])
+    assert (options.robot, options.gravity, options.samples, options.seed) == (
+        'a.urdf',
+        (0.0, 0.0, -9.81),
+        4096,
+        1,
+    )
+    assert not (options.json or options.strict or options.html)
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [
+        [],
+        ['a.urdf', '--gravity', '0', '0'],
+        ['a.urdf', '--gravity', '0', '0', 'nan'],
+        ['a.urdf', '--samples', 'many'],
+        ['a.urdf', '--no-such-option'],
+    ],
+)
+def test_unusable_arguments_end_with_2(arguments, capsys):
+    with pytest.raises(SystemExit) as caught:
+        parse(arguments)
+    assert caught.value.code == 2
+    assert 'usage: report' in capsys.readouterr().err
+
+
+def test_negative_numbers_are_no_options():
+    assert parse(['a.urdf', '--gravity', '-9.81', '0', '-0.001']).gravity == [-9.81, 0.0, -0.001]
+
+
+def test_help_says_everything(capsys):
+    with pytest.raises(SystemExit) as caught:
+        parse(['--help'])
+    text = capsys.readouterr().out
+    assert caught.value.code == 0
+    for words in (
+        '--strict',
+        '--json',
+        '--html',
+        'exit codes:',
+        'xacro',
+        '--payload-link',
+        'm/s^2',
+        'notes',
+    ):
+        assert words in text
+    assert max(map(len, text.splitlines())) <= 99
+
+
+def test_the_progress_bar_is_on_standard_error_and_only_on_a_terminal():
+    master, slave = pty.openpty()
+    run = subprocess.Popen(
+        [sys.executable, '-m', 'dynamics_node.report', str(ARM7)],
+        stdout=subprocess.PIPE,
+        stderr=slave,
+        text=True,
+        # Where a CI runs there may be none, or one that cannot go back.
+        env={**os.environ, 'TERM': 'xterm'},
+    )
+    os.close(slave)
+    shown = b''
+    try:
+        while part := os.read(master, 4096):
+            shown += part
+    except OSError:  # the other end is closed
+        pass
+    finally:
+        os.close(master)
+    out = run.communicate(timeout=120)[0]
+    assert run.returncode == 0
+    assert b'%' in shown and '\x1b' not in out and ' % ' not in out.split('Largest')[0]

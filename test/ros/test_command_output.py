@@ -107,7 +107,7 @@ def test_stale_states_stop_by_the_ramp_and_latch_a_fault(client, start, options)
     publish = level(client)
     enabled(client, publish)
     client.commands.clear()
-    client.until(client.output_is('FAULT'))  # nobody publishes states any more
+    client.until(client.output_is('FAULT'))  # the joint states have ended
     client.during(0.2)
     efforts = np.array([effort for _, [effort] in client.commands])
     assert efforts[-1] == 0.0

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from soak.expected_sag import sink
+from soak.expected_sag import expected_sag
 from soak.rig import COMMAND_TOPIC, Rig
 from std_msgs.msg import Float64MultiArray
 
@@ -72,7 +72,7 @@ def assert_it_sank_by_the_ramp(rig):
     check_fading(rig, begin)
     time, position, velocity, effort = rig.client.truth_between(begin, end)
     # Never faster; a simulation that lags, and a command that comes late, make it slower.
-    expected_time, _, expected = sink(
+    expected_time, _, expected = expected_sag(
         rig.urdf_text, position[0], effort[0], STOP_RAMP, end - begin + CATCHES_UP
     )
     speed = np.abs(velocity).max(axis=1)

@@ -81,7 +81,7 @@ def waiting():
 
 @pytest.fixture
 def published(waiting, other):
-    """Let somebody publish joint states."""
+    """Wait until joint states are published."""
     waiting.client.until(lambda: waiting.client.node.count_publishers('/joint_states'))
 
 
@@ -107,7 +107,7 @@ def test_without_a_description_two_ways_to_give_one(waiting, capfd):
 
 def test_a_description_in_another_namespace_is_found(waiting, other, capfd):
     other.node.create_publisher(String, '/left/robot_description', LATCHED)
-    # Nobody publishes this one, so it helps nobody.
+    # A subscription alone is no source.
     other.node.create_subscription(String, '/right/robot_description', lambda _: None, LATCHED)
     # What a motion planner publishes is another kind of description.
     other.node.create_publisher(String, '/robot_description_semantic', LATCHED)

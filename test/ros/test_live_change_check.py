@@ -1,4 +1,4 @@
-"""What may change while the output is on, and what would throw or drop the arm."""
+"""Accepted and refused changes of parameters while the output is on."""
 
 from dynamics_node import RobotModel
 from dynamics_node.ros.parameters.live_change_check import check_change
@@ -22,7 +22,7 @@ def payload(mass, link='hand', com=(0.03, 0.0, 0.0)):
 
 
 def change(before, after, urdf=ARM7):
-    """Go from parameters to others, given what differs from the defaults."""
+    """Check a change between two sets of parameters, each given by its differences to default."""
     robot = ActiveRobot(RobotModel.from_urdf(urdf), ())
     before = check_all(before)
     robot.configure(before)
@@ -44,7 +44,7 @@ SCALED = {'effort_scale': [4.0] * N}
         (payload(1.0), {}),
         ({}, LIMITS),
         (payload(1.0), LIMITS | payload(1.0)),
-        # It is at its limit anyway: a tilting base must be followed, and less be possible.
+        # A joint at its limit: the efforts still follow a tilting base, and less load.
         (payload(500.0), payload(499.0)),
         (payload(500.0), {}),
         (payload(500.0), payload(501.0)),
@@ -55,7 +55,7 @@ SCALED = {'effort_scale': [4.0] * N}
     ],
     ids=str,
 )
-def test_what_the_arm_can_follow_is_possible(before, after):
+def test_a_change_within_the_limits_is_accepted(before, after):
     change(before, after)
 
 
@@ -63,13 +63,13 @@ def test_what_the_arm_can_follow_is_possible(before, after):
     'before, after, message',
     [
         ({}, payload(500.0), 'above the limit: shoulder_pitch'),
-        # A joint at its limit is no excuse for the others.
+        # Another joint at its limit does not permit it.
         (
             {'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2},
             {'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2} | payload(500.0),
             'shoulder_pitch',
         ),
-        # Nor is what turns round there: the effort would go from one limit to the other.
+        # A reversal at the limit: the effort would go from one limit to the other.
         (
             payload(500.0),
             payload(500.0, com=(0.0, 0.0, -3.0)),
@@ -90,19 +90,18 @@ def test_what_the_arm_can_follow_is_possible(before, after):
     ],
     ids=str,
 )
-def test_what_would_throw_or_drop_it_is_refused(before, after, message):
+def test_a_change_that_would_throw_or_drop_the_arm_is_refused(before, after, message):
     with pytest.raises(ParameterError, match=message):
         change(before, after)
 
 
-def test_a_joint_keeps_its_limit():
+def test_a_joint_cannot_lose_its_limit():
     change({'effort_limits': [5.0]}, {'effort_limits': [4.0]}, NO_LIMIT)
     with pytest.raises(ParameterError, match='got none for hinge'):
         change({'effort_limits': [5.0]}, {}, NO_LIMIT)
 
 
-def test_the_payload_of_the_test_turns_the_torque_round():
-    # So that the case above is what it says.
+def test_the_payload_above_reverses_the_torque():
     model = RobotModel.from_urdf(ARM7)
     G = [
         model.with_payload('hand', 500.0, com).gravity_torque(Q)[1]
@@ -111,7 +110,7 @@ def test_the_payload_of_the_test_turns_the_torque_round():
     assert G[0] < -90.0 and G[1] > 90.0
 
 
-def test_a_torque_that_is_no_number_is_above_every_limit():
+def test_a_torque_of_nan_is_above_every_limit():
     robot, values = ActiveRobot(RobotModel.from_urdf(ARM7), ()), check_all({})
     robot.buffer.update(0.0, list(robot.joint_names), Q)
     with np.errstate(over='ignore'):

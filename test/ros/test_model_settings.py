@@ -1,4 +1,4 @@
-"""From parameters to the model: each of them changes it, and in the order of the joints."""
+"""From parameters to the model: every parameter changes it, in the order of the joints."""
 
 from dynamics_node import ArgumentError, InertiaError, RobotModel
 from dynamics_node.ros.parameters.model_settings import configured, tensor
@@ -12,18 +12,17 @@ ARM = RobotModel.from_urdf(ARM7)
 CHOSEN = tuple(ARM.joint_names[i] for i in (3, 1))
 Q, QD = np.linspace(-1.0, 1.0, 8), np.linspace(2.0, -3.0, 8)
 PAYLOAD = {'payload.link': 'hand', 'payload.mass': 2.0}
+OTHERS = [0, 2, 4, 5, 6, 7]
+TENSOR = [[0.02, 0.001, -0.002], [0.001, 0.03, 0.003], [-0.002, 0.003, 0.025]]
 
 
-def made(**values):
-    """Return the model of an arm with some parameters, dots written as double underscores."""
-    return configured(
-        ActiveRobot(ARM, CHOSEN),
-        check_all({name.replace('__', '.'): value for name, value in values.items()}),
-    )
+def model_with(values):
+    """Return the model of an arm with some parameters."""
+    return configured(ActiveRobot(ARM, CHOSEN), check_all(values))
 
 
 def test_the_defaults_are_the_robot_of_the_urdf():
-    model = made()
+    model = model_with({})
     assert np.array_equal(model.mass_matrix(Q), ARM.mass_matrix(Q))
     assert np.array_equal(model.friction_torque(QD), ARM.friction_torque(QD))
     assert model.payload is None
@@ -37,54 +36,39 @@ def test_the_defaults_are_the_robot_of_the_urdf():
             {'rotor_inertia': [0.3, 0.1]},
             lambda: ARM.with_rotor_inertia([0.0, 0.1, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0]),
         ),
-        ({'payload__link': 'hand', 'payload__mass': 2.0}, lambda: ARM.with_payload('hand', 2.0)),
+        (PAYLOAD, lambda: ARM.with_payload('hand', 2.0)),
         (
-            {'payload__link': 'hand', 'payload__mass': 2.0, 'payload__com': [0.1, 0.2, 0.3]},
+            {**PAYLOAD, 'payload.com': [0.1, 0.2, 0.3]},
             lambda: ARM.with_payload('hand', 2.0, (0.1, 0.2, 0.3)),
         ),
         (
-            {
-                'payload__link': 'hand',
-                'payload__mass': 2.0,
-                'payload__inertia': [0.02, 0.001, -0.002, 0.03, 0.003, 0.025],
-            },
-            lambda: ARM.with_payload(
-                'hand',
-                2.0,
-                inertia=[[0.02, 0.001, -0.002], [0.001, 0.03, 0.003], [-0.002, 0.003, 0.025]],
-            ),
+            {**PAYLOAD, 'payload.inertia': [0.02, 0.001, -0.002, 0.03, 0.003, 0.025]},
+            lambda: ARM.with_payload('hand', 2.0, inertia=TENSOR),
         ),
     ],
 )
-def test_each_of_them_changes_the_efforts_of_a_motion(values, expected):
+def test_every_parameter_changes_the_efforts_of_a_motion(values, expected):
     motion = Q, QD, 3.0 * Q
-    effort = made(**values).inverse_dynamics(*motion)
+    effort = model_with(values).inverse_dynamics(*motion)
     assert effort == pytest.approx(expected().inverse_dynamics(*motion), rel=1e-13, abs=1e-13)
     assert effort != pytest.approx(ARM.inverse_dynamics(*motion), abs=1e-3)
 
 
-@pytest.mark.parametrize(
-    ('values', 'expected'),
-    [
-        ({'friction__viscous': [0.7, 0.2]}, lambda f: f.viscous),
-        ({'friction__coulomb': [0.7, 0.2]}, lambda f: f.coulomb),
-        ({'friction__smoothing_velocity': [0.7, 0.2]}, lambda f: f.smoothing_velocity),
-    ],
-)
-def test_friction_of_the_chosen_joints_the_urdf_for_the_others(values, expected):
-    numbers, before = expected(made(**values).friction), expected(ARM.friction)
-    assert numbers[[3, 1]].tolist() == [0.7, 0.2]
-    others = [0, 2, 4, 5, 6, 7]
-    assert numbers[others].tolist() == before[others].tolist()
-    assert numbers.tolist() != before.tolist()
+@pytest.mark.parametrize('name', ['viscous', 'coulomb', 'smoothing_velocity'])
+def test_friction_changes_for_the_chosen_joints_only(name):
+    changed = getattr(model_with({f'friction.{name}': [0.7, 0.2]}).friction, name)
+    before = getattr(ARM.friction, name)
+    assert changed[[3, 1]].tolist() == [0.7, 0.2]
+    assert changed[OTHERS].tolist() == before[OTHERS].tolist()
+    assert changed.tolist() != before.tolist()
 
 
-def test_one_smoothing_velocity_is_for_all_chosen_joints():
-    friction = made(friction__smoothing_velocity=0.3).friction
+def test_one_smoothing_velocity_counts_for_all_chosen_joints():
+    friction = model_with({'friction.smoothing_velocity': 0.3}).friction
     assert friction.smoothing_velocity[[3, 1]].tolist() == [0.3, 0.3]
 
 
-def test_only_what_differs_is_done_anew():
+def test_only_differences_are_applied():
     robot, before = ActiveRobot(ARM, ()), check_all(PAYLOAD)
     robot.configure(before)
     loaded = robot.model
@@ -95,14 +79,11 @@ def test_only_what_differs_is_done_anew():
     assert np.array_equal(robot.model.gravity_torque(Q), ARM.gravity_torque(Q))
 
 
-def test_what_the_robot_cannot_be_is_refused():
+def test_an_unknown_link_and_a_nonphysical_inertia_are_refused():
     with pytest.raises(ArgumentError, match=r"^payload.link: 'nose' is not a link of"):
-        made(payload__link='nose')
+        model_with({'payload.link': 'nose'})
     with pytest.raises(InertiaError, match='triangle'):
-        made(
-            **{name.replace('.', '__'): value for name, value in PAYLOAD.items()},
-            payload__inertia=[1.0, 0, 0, 0, 0, 0],
-        )
+        model_with({**PAYLOAD, 'payload.inertia': [1.0, 0, 0, 0, 0, 0]})
 
 
 def test_the_tensor_of_six_numbers():

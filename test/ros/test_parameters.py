@@ -1,10 +1,10 @@
-"""The table of parameters: checks, and that every document tells the same."""
+"""The table of parameters: checks, documents and declaration."""
 
 from pathlib import Path
 import re
 
 from dynamics_node.ros.parameters.parameters import Parameters
-from dynamics_node.ros.parameters.table import check_all, ParameterError, PARAMETERS
+from dynamics_node.ros.parameters.table import check_all, check_lengths, ParameterError, PARAMETERS
 import pytest
 from rclpy.parameter import Parameter as RosParameter
 from support.processes import Client
@@ -48,21 +48,42 @@ def test_a_wrong_value_is_refused_with_the_reason(name, value, message):
         check_all({name: value})
 
 
-def test_all_wrong_values_are_named_at_once():
+def test_all_wrong_values_are_named_together():
     with pytest.raises(ParameterError, match=r'state_timeout.*; start_ramp'):
         check_all({'state_timeout': 0, 'start_ramp': -1})
 
 
-def test_the_accepted_values_are_said_in_words():
-    said = {parameter.name: parameter.constraints() for parameter in PARAMETERS}
-    assert said['state_timeout'] == 'a number > 0 and <= 10'
-    assert said['effort_limits'] == 'a finite number > 0'
-    assert said['stop_behavior'] == 'one of ramp_to_zero, hold, zero'
-    assert said['joints'] == said['publish_dynamics'] == ''
+def test_constraints_are_the_accepted_values_in_words():
+    constraints = {parameter.name: parameter.constraints() for parameter in PARAMETERS}
+    assert constraints['state_timeout'] == 'a number > 0 and <= 10'
+    assert constraints['effort_limits'] == 'a finite number > 0'
+    assert constraints['stop_behavior'] == 'one of ramp_to_zero, hold, zero'
+    assert constraints['joints'] == constraints['publish_dynamics'] == ''
 
 
-def test_integers_are_taken_for_doubles():
+def test_integers_are_accepted_as_doubles():
     assert check_all({'effort_limits': [87, 12]})['effort_limits'] == (87.0, 12.0)
+
+
+@pytest.mark.parametrize(
+    'name, count, is_accepted',
+    [
+        ('effort_limits', 0, True),
+        ('effort_limits', 1, False),
+        ('effort_limits', 2, True),
+        ('rotor_inertia', 3, False),
+        ('friction.smoothing_velocity', 1, True),
+        ('friction.smoothing_velocity', 3, False),
+    ],
+)
+def test_a_parameter_per_joint_has_one_number_per_joint(name, count, is_accepted):
+    values = check_all({name: [1.0] * count})
+    if is_accepted:
+        check_lengths(values, ['a', 'b'])
+        return
+    reason = f'^{name}: expected 2 numbers for a, b, or none; got {count}$'
+    with pytest.raises(ParameterError, match=reason):
+        check_lengths(values, ['a', 'b'])
 
 
 def flat(tree, prefix=''):
@@ -77,7 +98,7 @@ def flat(tree, prefix=''):
 def test_the_parameter_file_has_every_parameter_with_its_default():
     text = (ROOT / 'config' / 'dynamics.yaml').read_text()
     [node] = yaml.safe_load(text).values()
-    # Those that are empty stand in comments, with an example.
+    # Empty ones are comments, with an example.
     written = dict(flat(node['ros__parameters']))
     for parameter in PARAMETERS:
         if parameter.default == ():
@@ -88,22 +109,9 @@ def test_the_parameter_file_has_every_parameter_with_its_default():
     assert written == {}
 
 
-def test_the_reference_has_every_parameter_with_its_default():
-    text = (ROOT / 'docs' / 'reference.md').read_text()
-    rows = dict(re.findall(r'^\| `([a-z_.]+)` \| [a-z\[\]]+ \| (.*?) \|', text, re.M))
-    for parameter in PARAMETERS:
-        default = parameter.default
-        if isinstance(default, bool):
-            shown = str(default).lower()
-        else:
-            shown = list(default) if isinstance(default, tuple) else default
-            shown = "''" if shown == '' else shown
-        assert rows.get(parameter.name) == f'`{shown}`', parameter.name
-
-
 @pytest.fixture
-def given():
-    """Return a node that was started with two names that nobody declares."""
+def started_node():
+    """Return a node that was started with two undeclared names."""
     client = Client(
         'misspelled',
         parameter_overrides=[
@@ -115,17 +123,17 @@ def given():
     client.close()
 
 
-def test_a_misspelled_name_is_warned_of_and_what_others_use_is_not(given, capfd):
-    Parameters(given)
-    said = capfd.readouterr().err
+def test_a_misspelled_name_gets_a_warning_and_other_names_do_not(started_node, capfd):
+    Parameters(started_node)
+    log = capfd.readouterr().err
     assert (
         "there is no parameter 'effort_limit', and its value is ignored: is 'effort_limits' meant?"
-    ) in said
-    assert 'color' not in said
+    ) in log
+    assert 'color' not in log
 
 
-def test_what_is_accepted_stands_in_the_description_of_a_parameter(given):
-    Parameters(given)
-    descriptor = given.describe_parameter('state_timeout')
+def test_the_descriptor_has_the_description_and_the_accepted_values(started_node):
+    Parameters(started_node)
+    descriptor = started_node.describe_parameter('state_timeout')
     assert descriptor.additional_constraints == 'a number > 0 and <= 10'
     assert descriptor.description.startswith('Largest age of a joint state, s')

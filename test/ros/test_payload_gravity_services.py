@@ -1,4 +1,4 @@
-"""~/set_payload and ~/set_gravity over DDS: what they change, refuse and answer."""
+"""~/set_payload and ~/set_gravity over DDS: effects, refusals and answers."""
 
 import re
 
@@ -8,8 +8,8 @@ from dynamics_node import RobotModel
 from geometry_msgs.msg import Inertia, Vector3, Vector3Stamped
 import numpy as np
 import pytest
-from rcl_interfaces.msg import Parameter, ParameterValue
-from rcl_interfaces.srv import GetParameters, SetParameters
+from rcl_interfaces.srv import GetParameters
+from rclpy.parameter import parameter_value_to_python
 from std_msgs.msg import Header
 from support.pinocchio_oracle import PinocchioOracle
 from support.random_payload import with_payload_link
@@ -18,93 +18,89 @@ from support.robots import ARM7
 ARM = RobotModel.from_urdf(ARM7)
 N = len(ARM.joint_names)
 Q = np.clip(np.linspace(0.8, -0.9, N), *ARM.position_limits.T)
+FRICTION = ('viscous', 'coulomb', 'smoothing_velocity')
+COM = (0.01, -0.02, 0.08)
+SIX = {'ixx': 0.02, 'ixy': 0.001, 'ixz': -0.002, 'iyy': 0.03, 'iyz': 0.003, 'izz': 0.025}
 TENSOR = np.array([[0.02, 0.001, -0.002], [0.001, 0.03, 0.003], [-0.002, 0.003, 0.025]])
-BOX = Inertia(
-    m=1.5,
-    com=Vector3(x=0.01, y=-0.02, z=0.08),
-    ixx=0.02,
-    ixy=0.001,
-    ixz=-0.002,
-    iyy=0.03,
-    iyz=0.003,
-    izz=0.025,
-)
+BOX = Inertia(m=1.5, com=Vector3(x=COM[0], y=COM[1], z=COM[2]), **SIX)
 
 
-def set_payload(client, link='', inertia=None, action=None):
-    """Call ~/set_payload."""
-    return client.call(
-        SetPayload,
-        '/dynamics_node/set_payload',
-        SetPayload.Request(link=link, inertia=inertia or Inertia()),
-        action,
-    )
+def set_payload(client, link='', inertia=None):
+    """Call ~/set_payload; without a payload by default."""
+    return client.ask(SetPayload, link=link, inertia=inertia or Inertia())
 
 
 def set_gravity(client, vector, frame='', action=None):
     """Call ~/set_gravity."""
     x, y, z = map(float, vector)
     stamped = Vector3Stamped(header=Header(frame_id=frame), vector=Vector3(x=x, y=y, z=z))
-    return client.call(
-        SetGravity, '/dynamics_node/set_gravity', SetGravity.Request(gravity=stamped), action
-    )
+    return client.ask(SetGravity, action, gravity=stamped)
+
+
+def numbers(stamped):
+    """Return the numbers of a stamped vector."""
+    return [stamped.vector.x, stamped.vector.y, stamped.vector.z]
 
 
 def gravity_torque(client):
-    """Return G at Q."""
-    answer = client.call(
-        GetGravityTorque,
-        '/dynamics_node/get_gravity_torque',
-        GetGravityTorque.Request(position=Q.tolist()),
-    )
+    """Return G at Q from the node."""
+    answer = client.ask(GetGravityTorque, position=Q.tolist())
     assert answer.success, answer.message
     return np.array(answer.gravity_torque)
 
 
-def parameter(client, name):
-    """Return a parameter of the node."""
-    answer = client.call(
-        GetParameters, '/dynamics_node/get_parameters', GetParameters.Request(names=[name])
+def assert_gravity_torque_of(model, client):
+    np.testing.assert_allclose(gravity_torque(client), model.gravity_torque(Q), rtol=0, atol=1e-12)
+
+
+def assert_gravity_torque_with_box(client, link, gravity=(0.0, 0.0, -9.81)):
+    # By Pinocchio, from a URDF with the box as another link.
+    text = with_payload_link(ARM7.read_text(), link, BOX.m, COM, TENSOR)
+    expected = PinocchioOracle(text, gravity).dynamics(ARM.joint_names, Q, 0 * Q)[2]
+    np.testing.assert_allclose(
+        gravity_torque(client), expected, rtol=0, atol=1e-11 * np.abs(expected).max()
     )
-    value = answer.values[0]
-    return {3: value.double_value, 4: value.string_value, 8: list(value.double_array_value)}[
-        value.type
-    ]
+
+
+def parameter(client, name):
+    """Return a parameter of the node; a tuple for an array."""
+    value = parameter_value_to_python(client.ask(GetParameters, names=[name]).values[0])
+    return value if isinstance(value, (float, str)) else tuple(value)
 
 
 @pytest.fixture(autouse=True)
-def as_it_was(shared):
+def reset(shared):
     yield
     assert set_payload(shared).success
     assert set_gravity(shared, (0.0, 0.0, -9.81)).success
 
 
-def test_a_payload_weighs_moves_and_is_gone_without_a_trace(shared):
+def diagnosed_payload(messages):
+    """Return the payload in the newest diagnostics; None before the first."""
+    values = [
+        item
+        for message in messages[-1:]
+        for status in message.status
+        for item in status.values
+        if item.key == 'payload'
+    ]
+    return values[0].value if values else None
+
+
+def test_a_payload_changes_gravity_torque_and_leaves_no_trace_when_removed(shared):
     before, health = gravity_torque(shared), shared.listen(DiagnosticArray, '/diagnostics')
     for link in ('tool_center', 'forearm'):
         answer = set_payload(shared, link, BOX)
         assert answer.success, answer.message
         assert answer.message == f'1.5 kg on {link}'
         assert (answer.link, answer.inertia) == (link, BOX)
-        text = with_payload_link(ARM7.read_text(), link, 1.5, (0.01, -0.02, 0.08), TENSOR)
-        expected = PinocchioOracle(text).dynamics(ARM.joint_names, Q, 0 * Q)[2]
-        np.testing.assert_allclose(
-            gravity_torque(shared), expected, rtol=0, atol=1e-11 * np.abs(expected).max()
-        )
-        shared.until(
-            lambda: any(
-                status.values
-                and {value.key: value.value for value in status.values}.get('payload')
-                == f'1.5 kg on {link}'  # noqa: B023
-                for message in health
-                for status in message.status
-            )
-        )
-        # Readable by everybody.
+        assert_gravity_torque_with_box(shared, link)
+        text = answer.message
+        shared.until(lambda: diagnosed_payload(health) == text)  # noqa: B023
         assert parameter(shared, 'payload.link') == link
         assert parameter(shared, 'payload.mass') == 1.5
-        assert parameter(shared, 'payload.com') == [0.01, -0.02, 0.08]
-        assert parameter(shared, 'payload.inertia') == [0.02, 0.001, -0.002, 0.03, 0.003, 0.025]
+        assert parameter(shared, 'payload.com') == COM
+        assert parameter(shared, 'payload.inertia') == tuple(SIX.values())
     answer = set_payload(shared, 'hand')
     assert (answer.success, answer.message) == (True, 'nothing is carried')
     assert (answer.link, answer.inertia) == ('', Inertia())
@@ -112,7 +108,7 @@ def test_a_payload_weighs_moves_and_is_gone_without_a_trace(shared):
     assert gravity_torque(shared).tolist() == before.tolist()
 
 
-def test_on_a_link_that_no_joint_moves_it_has_no_effect_and_it_says_so(shared):
+def test_a_payload_on_a_fixed_link_has_no_effect_and_the_answer_says_so(shared):
     before = gravity_torque(shared)
     answer = set_payload(shared, 'base', BOX)
     assert answer.success
@@ -145,7 +141,7 @@ def test_on_a_link_that_no_joint_moves_it_has_no_effect_and_it_says_so(shared):
         ('hand', Inertia(m=1.0, ixx=0.1, iyy=0.1, izz=0.5), 'inertia is not physical: .*triangle'),
     ],
 )
-def test_what_no_robot_can_carry_is_refused_and_the_last_one_stays(shared, link, inertia, message):
+def test_a_wrong_payload_is_refused_and_the_last_one_stays(shared, link, inertia, message):
     assert set_payload(shared, 'hand', BOX).success
     loaded = gravity_torque(shared)
     answer = set_payload(shared, link, inertia)
@@ -155,43 +151,29 @@ def test_what_no_robot_can_carry_is_refused_and_the_last_one_stays(shared, link,
     assert gravity_torque(shared).tolist() == loaded.tolist()
 
 
-def test_the_parameters_set_one_by_one_say_the_same(shared):
-    def put(name, **value):
-        answer = shared.call(
-            SetParameters,
-            '/dynamics_node/set_parameters',
-            SetParameters.Request(
-                parameters=[Parameter(name=name, value=ParameterValue(**value))]
-            ),
-        )
-        return answer.results[0]
-
-    refused = put('payload.mass', type=3, double_value=1.5)
+def test_the_payload_can_be_set_by_single_parameters(shared):
+    refused = shared.set_node_parameter('payload.mass', 1.5)
     assert not refused.successful
     assert 'payload.link: expected the link' in refused.reason
-    reason = put('payload.link', type=4, string_value='nose').reason
-    assert "payload.link: 'nose' is not a link" in reason
-    assert put('payload.link', type=4, string_value='hand').successful
-    assert put('payload.mass', type=3, double_value=1.5).successful
-    expected = ARM.with_payload('hand', 1.5).gravity_torque(Q)
-    np.testing.assert_allclose(gravity_torque(shared), expected, rtol=0, atol=1e-12)
+    refused = shared.set_node_parameter('payload.link', 'nose')
+    assert "payload.link: 'nose' is not a link" in refused.reason
+    assert shared.set_node_parameter('payload.link', 'hand').successful
+    assert shared.set_node_parameter('payload.mass', 1.5).successful
+    assert_gravity_torque_of(ARM.with_payload('hand', 1.5), shared)
 
 
-def test_gravity_along_any_vector_in_the_frame_of_any_link(shared):
-    for frame in ('', 'base'):
-        answer = set_gravity(shared, (0.0, 9.81, 0.0), frame)
-        assert answer.success, answer.message
-        assert answer.message == 'gravity is 9.81 m/s^2 along this vector'
-        np.testing.assert_allclose(
-            gravity_torque(shared),
-            ARM.with_gravity((0.0, 9.81, 0.0)).gravity_torque(Q),
-            rtol=0,
-            atol=1e-12,
-        )
-        assert set_gravity(shared, (0.0, 0.0, -9.81)).success
-    # An inclinometer on the hand says where the earth is, seen from there.
+@pytest.mark.parametrize('frame', ['', 'base'])
+def test_gravity_in_the_frame_of_the_root_link(shared, frame):
+    answer = set_gravity(shared, (0.0, 9.81, 0.0), frame)
+    assert answer.success, answer.message
+    assert answer.message == 'gravity is 9.81 m/s^2 along this vector'
+    assert_gravity_torque_of(ARM.with_gravity((0.0, 9.81, 0.0)), shared)
+
+
+def test_gravity_in_the_frame_of_a_moving_link(shared):
+    # As from an inclinometer on the hand.
     in_hand = np.array([3.0, -4.0, 8.0])
-    turn = ARM.link_pose(Q, 'hand')[:3, :3]
+    in_base = ARM.link_pose(Q, 'hand')[:3, :3] @ in_hand
 
     def publish():
         shared.publish(reversed(ARM.joint_names), reversed(Q))
@@ -201,25 +183,19 @@ def test_gravity_along_any_vector_in_the_frame_of_any_link(shared):
     assert answer.success, answer.message
     assert 'not that of the earth' in answer.message
     assert answer.gravity.header.frame_id == 'base'
-    vector = answer.gravity.vector
-    assert [vector.x, vector.y, vector.z] == pytest.approx(turn @ in_hand, abs=1e-14)
-    assert parameter(shared, 'gravity') == [vector.x, vector.y, vector.z]
-    np.testing.assert_allclose(
-        gravity_torque(shared),
-        ARM.with_gravity(turn @ in_hand).gravity_torque(Q),
-        rtol=0,
-        atol=1e-12,
-    )
+    assert numbers(answer.gravity) == pytest.approx(in_base, abs=1e-14)
+    assert parameter(shared, 'gravity') == tuple(numbers(answer.gravity))
+    assert_gravity_torque_of(ARM.with_gravity(in_base), shared)
 
 
-def test_only_the_joints_that_turn_a_frame_must_be_measured(client, start):
+def test_only_the_joints_between_base_and_frame_must_be_measured(client, start):
     start(robot_description_file=ARM7, joints='[shoulder_yaw, shoulder_pitch]', state_timeout=1.0)
 
     def publish():
         client.publish(['shoulder_yaw', 'shoulder_pitch'], [0.3, 0.5])
 
     client.until_heard(publish)
-    # Nobody has said how the elbow is turned, and the hand with it.
+    # The elbow, which turns the hand, is not measured.
     answer = set_gravity(client, (0.0, 0.0, -9.81), 'hand', publish)
     assert not answer.success
     assert 'no joint state within 1 s for upper_arm_roll, elbow_pitch, ' in answer.message
@@ -229,19 +205,14 @@ def test_only_the_joints_that_turn_a_frame_must_be_measured(client, start):
     answer = set_gravity(client, (0.0, 3.0, -9.0), 'upper_arm', publish)
     assert answer.success, answer.message
     expected = ARM.link_pose(q, 'upper_arm')[:3, :3] @ (0.0, 3.0, -9.0)
-    vector = answer.gravity.vector
-    assert [vector.x, vector.y, vector.z] == pytest.approx(expected, abs=1e-14)
+    assert numbers(answer.gravity) == pytest.approx(expected, abs=1e-14)
 
 
-def test_a_payload_follows_gravity_whatever_the_mounting(shared):
+@pytest.mark.parametrize('gravity', [(9.81, 0.0, 0.0), (0.0, 0.0, 9.81), (3.0, -5.0, 7.5)])
+def test_gravity_torque_of_a_payload_in_any_mounting(shared, gravity):
     assert set_payload(shared, 'hand', BOX).success
-    for gravity in ((9.81, 0.0, 0.0), (0.0, 0.0, 9.81), (3.0, -5.0, 7.5)):
-        assert set_gravity(shared, gravity).success
-        text = with_payload_link(ARM7.read_text(), 'hand', 1.5, (0.01, -0.02, 0.08), TENSOR)
-        expected = PinocchioOracle(text, gravity).dynamics(ARM.joint_names, Q, 0 * Q)[2]
-        np.testing.assert_allclose(
-            gravity_torque(shared), expected, rtol=0, atol=1e-11 * np.abs(expected).max()
-        )
+    assert set_gravity(shared, gravity).success
+    assert_gravity_torque_with_box(shared, 'hand', gravity)
 
 
 @pytest.mark.parametrize(
@@ -262,8 +233,8 @@ def test_a_payload_follows_gravity_whatever_the_mounting(shared):
         ),
     ],
 )
-def test_a_gravity_that_cannot_be_is_refused(shared, vector, frame, message):
-    shared.during(1.1)  # what another test has published becomes too old
+def test_a_wrong_gravity_is_refused_and_the_last_one_stays(shared, vector, frame, message):
+    shared.during(1.1)  # until the states of other tests are too old
     answer = set_gravity(shared, vector, frame)
     assert not answer.success
     assert re.search(message, answer.message), answer.message
@@ -271,7 +242,7 @@ def test_a_gravity_that_cannot_be_is_refused(shared, vector, frame, message):
     assert answer.gravity.header.frame_id == 'base'
 
 
-def test_all_of_it_from_the_start_by_parameters(client, start):
+def test_gravity_payload_rotors_and_friction_from_the_start(client, start):
     start(
         robot_description_file=ARM7,
         gravity='[0.0, 0.0, 9.81]',
@@ -280,8 +251,8 @@ def test_all_of_it_from_the_start_by_parameters(client, start):
         **{
             'payload.link': 'hand',
             'payload.mass': 1.5,
-            'payload.com': '[0.01, -0.02, 0.08]',
-            'payload.inertia': '[0.02, 0.001, -0.002, 0.03, 0.003, 0.025]',
+            'payload.com': str(list(COM)),
+            'payload.inertia': str(list(SIX.values())),
             'friction.viscous': '[0.7, 0.2]',
             'friction.coulomb': '[0.4, 0.3]',
             'friction.smoothing_velocity': 0.1,
@@ -293,16 +264,12 @@ def test_all_of_it_from_the_start_by_parameters(client, start):
     state = {'position': [0.3, 0.4], 'velocity': [0.2, -0.3], 'acceleration': [2.0, 3.0]}
     q[index], qd[index], qdd[index] = state.values()
     rotors[index] = 0.3, 0.1
-    text = with_payload_link(ARM7.read_text(), 'hand', 1.5, (0.01, -0.02, 0.08), TENSOR)
+    text = with_payload_link(ARM7.read_text(), 'hand', BOX.m, COM, TENSOR)
     effort = PinocchioOracle(text, (0.0, 0.0, 9.81)).inverse_dynamics(ARM.joint_names, q, qd, qdd)
     effort = (effort + rotors * qdd)[index]
     friction = [0.7 * 0.2 + 0.4 * np.tanh(2.0), 0.2 * -0.3 + 0.3 * np.tanh(-3.0)]
     for with_friction in (False, True):
-        answer = client.call(
-            InverseDynamics,
-            '/dynamics_node/inverse_dynamics',
-            InverseDynamics.Request(**state, with_friction=with_friction),
-        )
+        answer = client.ask(InverseDynamics, **state, with_friction=with_friction)
         assert answer.success, answer.message
         expected = effort + np.multiply(friction, with_friction)
         np.testing.assert_allclose(answer.effort, expected, rtol=1e-11)
@@ -328,58 +295,36 @@ def test_all_of_it_from_the_start_by_parameters(client, start):
         ({'friction.coulomb': '[-1.0]'}, 'friction.coulomb: expected a number >= 0 and <= 1e.06'),
     ],
 )
-def test_a_start_with_wrong_ones_ends_at_once_and_says_why(start, parameters, message):
+def test_a_start_with_a_wrong_parameter_ends_at_once_with_the_reason(start, parameters, message):
     code, output = start(robot_description_file=ARM7, **parameters).wait(60.0)
     assert code == 1
     assert re.search(message, output), output
 
 
-def test_friction_and_rotors_at_run_time(shared):
-    def put(name, *values):
-        answer = shared.call(
-            SetParameters,
-            '/dynamics_node/set_parameters',
-            SetParameters.Request(
-                parameters=[
-                    Parameter(
-                        name=name, value=ParameterValue(type=8, double_array_value=list(values))
-                    )
-                ]
-            ),
-        )
-        assert answer.results[0].successful, answer.results[0].reason
+def test_friction_and_rotor_inertia_change_at_run_time(shared):
+    qd, qdd = np.full(N, 0.1), np.ones(N)
+    motion = {'position': Q.tolist(), 'velocity': qd.tolist(), 'acceleration': qdd.tolist()}
+
+    def put(name, values):
+        result = shared.set_node_parameter(name, values)
+        assert result.successful, result.reason
 
     def effort():
-        answer = shared.call(
-            InverseDynamics,
-            '/dynamics_node/inverse_dynamics',
-            InverseDynamics.Request(
-                position=Q.tolist(), velocity=[0.1] * N, acceleration=[1.0] * N, with_friction=True
-            ),
-        )
-        return np.array(answer.effort)
+        return np.array(shared.ask(InverseDynamics, **motion, with_friction=True).effort)
 
-    model, qd, qdd = ARM, np.full(N, 0.1), np.ones(N)
-    for name in (
-        'rotor_inertia',
-        'friction.viscous',
-        'friction.coulomb',
-        'friction.smoothing_velocity',
-    ):
+    def assert_effort_of(model):
+        expected = model.inverse_dynamics(Q, qd, qdd) + model.friction_torque(qd)
+        np.testing.assert_allclose(effort(), expected, rtol=0, atol=1e-12)
+
+    model = ARM
+    names = ['rotor_inertia', *(f'friction.{part}' for part in FRICTION)]
+    for name in names:
         values, before, field = np.linspace(0.1, 0.8, N), effort(), name.split('.')[-1]
         change = model.with_rotor_inertia if field == name else model.with_friction
         model = change(**{field: values})
-        put(name, *values)
-        after = effort()
-        expected = model.inverse_dynamics(Q, qd, qdd) + model.friction_torque(qd)
-        np.testing.assert_allclose(after, expected, rtol=0, atol=1e-12)
-        assert np.abs(after - before).max() > 0.01, name
-    for name in (
-        'rotor_inertia',
-        'friction.viscous',
-        'friction.coulomb',
-        'friction.smoothing_velocity',
-    ):
-        put(name)
-    expected = ARM.inverse_dynamics(Q, qd, qdd) + ARM.friction_torque(qd)
-    np.testing.assert_allclose(effort(), expected, rtol=0, atol=1e-12)
+        put(name, values.tolist())
+        assert_effort_of(model)
+        assert np.abs(effort() - before).max() > 0.01, name
+    for name in names:
+        put(name, [])
+    assert_effort_of(ARM)

@@ -1,7 +1,7 @@
 """
 A payload on the simulated arm, over DDS: set, moved and removed while the arm floats.
 
-The robot really carries a tool of which the URDF that the node reads says nothing.
+The simulated robot carries a tool; the URDF of the node does not contain it.
 
 """
 
@@ -12,8 +12,6 @@ from dynamics_node import RobotModel
 from geometry_msgs.msg import Inertia, Vector3, Vector3Stamped
 import numpy as np
 import pytest
-from rcl_interfaces.srv import SetParameters
-from rclpy.parameter import Parameter
 from soak.rig import Rig
 from support.random_payload import with_payload_link
 from support.robots import ARM7
@@ -25,7 +23,7 @@ HELD = math.radians(1.0)
 
 @pytest.fixture(scope='module')
 def rig(tmp_path_factory):
-    """Return the rig; the node believes that the hand is empty."""
+    """Return the rig; for the node the hand is empty."""
     urdf = tmp_path_factory.mktemp('robot') / 'with_tool.urdf'
     urdf.write_text(with_payload_link(ARM7.read_text(), 'hand', MASS, COM, TENSOR))
     rig = Rig(
@@ -38,30 +36,31 @@ def rig(tmp_path_factory):
     assert rig.client.judge.violations == []
 
 
-def carry(rig, link='', inertia=None):
-    """Call ~/set_payload."""
-    return rig.client.call(
-        SetPayload,
-        '/dynamics_node/set_payload',
-        SetPayload.Request(link=link, inertia=inertia or Inertia()),
-    )
+def set_payload(rig, link='', inertia=None):
+    """Call ~/set_payload; without a payload by default."""
+    return rig.client.ask(SetPayload, link=link, inertia=inertia or Inertia())
 
 
-def set_parameter(client, name, value):
-    """Set a parameter of the node; return why it is refused."""
-    answer = client.call(
-        SetParameters,
-        '/dynamics_node/set_parameters',
-        SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()]),
-    )
-    assert not answer.results[0].successful
-    return answer.results[0].reason
+def assert_held(rig, seconds):
+    """Assert that the arm keeps its position for some time; return the velocities."""
+    begin = rig.client.now
+    rig.during(seconds)
+    _, position, velocity, _ = rig.client.truth_between(begin, rig.client.now)
+    assert np.abs(position - position[0]).max() < HELD
+    return velocity
+
+
+def refusal(client, name, value):
+    """Return the reason why a parameter of the node is refused."""
+    result = client.set_node_parameter(name, value)
+    assert not result.successful
+    return result.reason
 
 
 @pytest.fixture
 def floating(rig):
     """Return the rig: the node knows the tool, and the arm floats."""
-    answer = carry(rig, 'hand', TOOL)
+    answer = set_payload(rig, 'hand', TOOL)
     assert answer.success, answer.message
     rig.float()
     yield rig
@@ -69,46 +68,42 @@ def floating(rig):
     assert rig.client.judge.violations == []
 
 
-def test_it_floats_with_the_tool_sinks_without_and_is_caught_again(floating):
+def test_the_arm_floats_with_the_tool_and_sinks_without(floating):
     rig, client = floating, floating.client
-    rig.until(lambda: client.speed < 0.001)  # what the brakes' release has left fades slowly
-    begin = client.now
-    rig.during(1.5)
-    _, position, velocity, _ = client.truth_between(begin, client.now)
-    assert np.abs(position - position[0]).max() < HELD
-    assert np.abs(velocity).max() < 0.05
-    # Forgotten: the arm gives way under what the node does not know of.
-    assert carry(rig).success
+    rig.until(lambda: client.speed < 0.001)  # the motion after the brakes' release fades slowly
+    assert np.abs(assert_held(rig, 1.5)).max() < 0.05
+    # Without the payload in the model, the arm sinks under the tool.
+    assert set_payload(rig).success
     rig.until(lambda: client.speed > 0.1)
-    assert carry(rig, 'hand', TOOL).success
+    assert set_payload(rig, 'hand', TOOL).success
     rig.until(lambda: client.speed < 0.01)
     assert client.output == 'ACTIVE', rig.explain()
 
 
-def test_set_moved_and_removed_in_a_loop(floating):
+def test_a_payload_is_set_moved_and_removed_in_a_loop(floating):
     rig, client = floating, floating.client
     states = len(client.outputs)
     before = client.judge.commands
     for round_ in range(25):
         link = ('forearm', 'upper_arm', 'hand', 'tool_center')[round_ % 4]
-        assert carry(rig, link, Inertia(m=0.1 + 0.1 * (round_ % 3))).success
+        assert set_payload(rig, link, Inertia(m=0.1 + 0.1 * (round_ % 3))).success
         rig.during(0.02)
-        assert carry(rig).success
-        assert carry(rig, 'hand', TOOL).success
+        assert set_payload(rig).success
+        assert set_payload(rig, 'hand', TOOL).success
         rig.during(0.02)
     assert len(client.outputs) == states, rig.explain()
     assert client.output == 'ACTIVE'
     client.settle(everything=True)
     assert client.judge.commands > before + 100
     assert client.judge.violations == []
-    # What the node sends is what the model with the tool needs, where the arm is now.
+    # The efforts are those of the model with the tool at the present position.
     model = RobotModel.from_urdf(ARM7).with_payload('hand', MASS, COM, TENSOR)
     rig.until(
         lambda: client.state[2] == pytest.approx(model.gravity_torque(client.state[0]), abs=0.01)
     )
-    # And without it, to the last bit that of the URDF.
+    # Without it, to the last bit those of the URDF.
     rig.catch()
-    assert carry(rig).success
+    assert set_payload(rig).success
     plain = RobotModel.from_urdf(ARM7)
     rig.until(
         lambda: (
@@ -118,35 +113,30 @@ def test_set_moved_and_removed_in_a_loop(floating):
     )
 
 
-def test_what_the_arm_cannot_hold_is_refused_while_output_is_on(floating):
+def test_a_change_beyond_the_limits_is_refused_while_the_output_is_on(floating):
     rig, client = floating, floating.client
-    answer = carry(rig, 'hand', Inertia(m=500.0))
+    answer = set_payload(rig, 'hand', Inertia(m=500.0))
     assert not answer.success
     assert 'its gravity torque would be above the limit: shoulder_pitch' in answer.message
     assert (answer.link, answer.inertia) == ('hand', TOOL)
-    answer = carry(rig, 'hand', Inertia(m=1e308, com=Vector3(z=0.06)))
+    answer = set_payload(rig, 'hand', Inertia(m=1e308, com=Vector3(z=0.06)))
     assert not answer.success
     assert 'inertia.m: expected a number >= 0 and <= 100000' in answer.message
     upwards = Vector3Stamped(vector=Vector3(z=9.81))
-    answer = client.call(
-        SetGravity, '/dynamics_node/set_gravity', SetGravity.Request(gravity=upwards)
-    )
+    answer = client.ask(SetGravity, gravity=upwards)
     assert not answer.success
     assert 'points up in the frame of the root link' in answer.message
     assert answer.gravity.vector.z == -9.81
-    # In two steps neither: first none at all, then upwards.
-    assert 'not zero while output is on' in set_parameter(client, 'gravity', [0.0, 0.0, 0.0])
-    assert 'above the limit: shoulder_pitch' in set_parameter(client, 'effort_scale', [10.0] * 8)
-    begin = client.now
-    rig.during(0.5)
-    _, position, _, _ = client.truth_between(begin, client.now)
-    assert np.abs(position - position[0]).max() < HELD
+    # Not in two steps either: first zero, then upwards.
+    assert 'not zero while output is on' in refusal(client, 'gravity', [0.0, 0.0, 0.0])
+    assert 'above the limit: shoulder_pitch' in refusal(client, 'effort_scale', [10.0] * 8)
+    assert_held(rig, 0.5)
     assert client.output == 'ACTIVE', rig.explain()
-    # With the output off it may be said, and the answer tells what it means.
+    # With the output off it is accepted, and the answer names the joints above their limits.
     rig.catch()
     assert client.enable(False).success
     rig.until(lambda: client.output == 'READY')
-    answer = carry(rig, 'hand', Inertia(m=500.0))
+    answer = set_payload(rig, 'hand', Inertia(m=500.0))
     assert answer.success
     assert 'gravity torque is above its limit: shoulder_pitch' in answer.message
-    assert carry(rig).success
+    assert set_payload(rig).success

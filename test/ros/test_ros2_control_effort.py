@@ -39,27 +39,27 @@ def test_every_controller_has_a_type_and_parameters(control):
     assert set(control) == {'controller_manager', *types}
 
 
-def test_the_efforts_arrive_where_the_node_sends_them(control, dynamics):
+def test_the_controller_takes_efforts_on_the_topic_of_the_node(control, dynamics):
     controller, _, topic = dynamics['command_topic'].rpartition('/')
     assert topic == 'commands'
     assert control[controller]['interface_name'] == 'effort'
 
 
-def test_joints_and_their_order_are_those_of_the_node(control, dynamics):
+def test_the_controller_has_the_joints_of_the_node_in_the_same_order(control, dynamics):
     assert 'joints' not in dynamics  # all movable joints, in the order of the URDF
     arm = RobotModel.from_urdf(ARM7)
     assert tuple(control['forward_effort_controller']['joints']) == arm.joint_names
     assert np.isfinite(arm.effort_limits).all()
 
 
-def test_the_joint_states_come_often_enough(control, dynamics):
+def test_the_rate_of_joint_states_fits_the_state_timeout(control, dynamics):
     period = 1.0 / control['controller_manager']['update_rate']
     assert period < dynamics['state_timeout'] / 10
     assert control['joint_state_broadcaster'] == {'use_local_topics': False}
 
 
 @pytest.mark.parametrize('namespace', ['', 'left', '/a/b'])
-def test_ros_reads_the_file_whatever_the_namespace(control, namespace):
+def test_ros_reads_the_file_in_every_namespace(control, namespace):
     context = rclpy.Context()
     rclpy.init(args=['--ros-args', '--params-file', str(FILE)], context=context)
     try:
@@ -78,7 +78,7 @@ def test_ros_reads_the_file_whatever_the_namespace(control, namespace):
 
 
 def flat(parameters):
-    """Return nested parameters with dots in their names."""
+    """Return nested parameters as one dictionary with dotted names."""
     return {
         f'{name}.{inner}' if inner else name: item
         for name, value in parameters.items()

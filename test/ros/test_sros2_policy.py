@@ -1,4 +1,4 @@
-"""The policies in config allow the node and the markers program what they do, nothing else."""
+"""The SROS2 policies in config permit exactly what the node and the markers program use."""
 
 from pathlib import Path
 import re
@@ -15,14 +15,14 @@ from visualization_msgs.msg import MarkerArray
 
 DOCUMENT = Path(__file__).parents[2] / 'docs' / 'security.md'
 MARKERS_POLICY = POLICY.with_name('sros2_policy_markers.xml')
-# Only when the node is to be enabled, and only where a controller listens.
-ASKED = '/forward_effort_controller/get_parameters'
+# Only used while the output is enabled, and with a controller on the command topic.
+ON_ENABLE = '/forward_effort_controller/get_parameters'
 
 
 def graph(client, namespace='/', name='dynamics_node'):
-    """Return what a node does, as seen from another one: permission → full names."""
+    """Return the names a node uses, as seen from another node: permission → full names."""
     node = client.node
-    questions = {
+    queries = {
         'publish': node.get_publisher_names_and_types_by_node,
         'subscribe': node.get_subscriber_names_and_types_by_node,
         'reply': node.get_service_names_and_types_by_node,
@@ -30,11 +30,11 @@ def graph(client, namespace='/', name='dynamics_node'):
     }
     try:
         return {
-            permission: {used for used, _ in question(name, namespace)}
-            for permission, question in questions.items()
+            permission: {used for used, _ in query(name, namespace)}
+            for permission, query in queries.items()
         }
     except NodeNameNonExistentError:
-        return {permission: set() for permission in questions}
+        return {permission: set() for permission in queries}
 
 
 def without(names, *others):
@@ -50,7 +50,7 @@ def difference(names, others):
 
 
 def check(client, allowed, *optional, **node):
-    """Demand that a node does all that is allowed, once everything is there, and no more."""
+    """Assert that a node uses all permitted names, except optional ones, and no others."""
     wanted = without(allowed, *optional)
     try:
         client.until(lambda: not difference(wanted, graph(client, **node)))
@@ -60,18 +60,18 @@ def check(client, allowed, *optional, **node):
     assert difference(graph(client, **node), allowed) == {}
 
 
-def test_the_node_does_what_it_is_allowed_and_no_more(client, start):
+def test_the_node_uses_exactly_the_permitted_names(client, start):
     start(use_sim_time='true')
-    check(client, read(POLICY.read_text()).allowed, ASKED)
+    check(client, read(POLICY.read_text()).allowed, ON_ENABLE)
 
 
-def test_it_holds_in_another_namespace(client, start):
+def test_the_node_in_another_namespace_uses_exactly_the_permitted_names(client, start):
     start('__ns:=/left', use_sim_time='true')
     allowed = read(POLICY.read_text(), namespace='/left').allowed
-    check(client, allowed, f'/left{ASKED}', namespace='/left')
+    check(client, allowed, f'/left{ON_ENABLE}', namespace='/left')
 
 
-def test_a_node_at_work_does_no_more(client, start):
+def test_an_enabled_node_uses_no_other_names(client, start):
     start()
     controller = rclpy.create_node('forward_effort_controller', context=client.context)
     commands = []
@@ -90,14 +90,14 @@ def test_a_node_at_work_does_no_more(client, start):
     client.until_heard(state)
     assert client.enable(True, state).success
     client.until(lambda: len(commands) > 20, state)
-    assert client.call(GetDynamics, '/dynamics_node/get_dynamics', action=state).success
+    assert client.ask(GetDynamics, state).success
     assert not any(forbidden), max(forbidden, key=len)
-    check(client, allowed, ASKED, '/clock')
+    check(client, allowed, ON_ENABLE, '/clock')
     controller.destroy_node()
 
 
 @pytest.mark.parametrize('namespace', ['/', '/left'])
-def test_the_markers_program_does_what_it_is_allowed_and_no_more(client, start_markers, namespace):
+def test_the_markers_program_uses_exactly_the_permitted_names(client, start_markers, namespace):
     start_markers(f'__ns:={namespace}', use_sim_time='true')
     client.listen(MarkerArray, f'{namespace.rstrip("/")}/dynamics_node/markers')
     allowed = read(MARKERS_POLICY.read_text(), namespace=namespace).allowed
@@ -111,11 +111,15 @@ def test_the_document_links_the_policy_of_the_markers_program():
     assert '(../config/sros2_policy_markers.xml), for an enclave `/markers`' in text
 
 
-def test_it_is_that_of_the_default_parameters():
+def test_the_policy_fits_the_default_parameters():
     [topic] = [parameter.default for parameter in PARAMETERS if parameter.name == 'command_topic']
     profile = read(POLICY.read_text())
     assert f'/{topic}' in profile.allowed['publish']
-    assert profile.allowed['request'] == {f'/{topic.rpartition("/")[0]}/get_parameters'} == {ASKED}
+    assert (
+        profile.allowed['request']
+        == {f'/{topic.rpartition("/")[0]}/get_parameters'}
+        == {ON_ENABLE}
+    )
 
 
 def test_the_document_names_the_enclave_of_the_file():

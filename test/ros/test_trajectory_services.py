@@ -11,8 +11,6 @@ from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from geometry_msgs.msg import Point
 import numpy as np
 import pytest
-from rcl_interfaces.msg import Parameter, ParameterValue
-from rcl_interfaces.srv import SetParameters
 from support.mujoco_oracle import MujocoOracle
 from support.pinocchio_oracle import PinocchioOracle
 from support.random_payload import with_payload_link
@@ -47,11 +45,7 @@ def message(time, positions, velocities=None, accelerations=None, names=ARM.join
 
 def ask(client, trajectory, **flags):
     """Call ~/compute_trajectory_effort."""
-    return client.call(
-        ComputeTrajectoryEffort,
-        '/dynamics_node/compute_trajectory_effort',
-        ComputeTrajectoryEffort.Request(trajectory=trajectory, **flags),
-    )
+    return client.ask(ComputeTrajectoryEffort, trajectory=trajectory, **flags)
 
 
 def efforts(answer):
@@ -60,16 +54,19 @@ def efforts(answer):
     return np.array([point.effort for point in answer.trajectory.points])
 
 
-def test_every_point_gets_its_effort_and_stays_what_it_was(shared):
+def test_every_point_gets_its_effort_and_is_otherwise_unchanged(shared):
     time = np.linspace(0.0, 2.0, 21)
     q, qd, qdd = motion(time)
     order = np.random.default_rng(1).permutation(N)
     names = [ARM.joint_names[i] for i in order]
     sent = message(time, q[:, order], qd[:, order], qdd[:, order], names)
     answer = ask(shared, sent)
-    judge = MujocoOracle(ARM7.read_text())
+    oracle = MujocoOracle(ARM7.read_text())
     expected = np.array(
-        [judge.inverse_dynamics(ARM.joint_names, *state) for state in zip(q, qd, qdd, strict=True)]
+        [
+            oracle.inverse_dynamics(ARM.joint_names, *state)
+            for state in zip(q, qd, qdd, strict=True)
+        ]
     )[:, order]
     np.testing.assert_allclose(
         efforts(answer), expected, rtol=0, atol=1e-11 * np.abs(expected).max()
@@ -84,7 +81,7 @@ def test_every_point_gets_its_effort_and_stays_what_it_was(shared):
     np.testing.assert_array_equal(answer.effort_limits, ARM.effort_limits[order])
 
 
-def test_missing_derivatives_are_those_of_a_spline_and_it_says_so(shared):
+def test_missing_derivatives_are_those_of_a_spline_and_the_answer_says_so(shared):
     time = np.linspace(0.0, 2.0, 201)
     q, qd, qdd = motion(time)
     exact = efforts(ask(shared, message(time, q, qd, qdd)))
@@ -98,7 +95,7 @@ def test_missing_derivatives_are_those_of_a_spline_and_it_says_so(shared):
     assert efforts(half) == pytest.approx(exact, abs=1e-4 * np.abs(exact).max())
 
 
-def test_gravity_and_friction_are_switched_by_the_request(shared):
+def test_the_request_switches_gravity_and_friction(shared):
     time = np.linspace(0.0, 1.0, 5)
     q, qd, qdd = motion(time)
     trajectory = message(time, q, qd, qdd)
@@ -127,11 +124,9 @@ def test_points_and_joints_above_their_limit_are_named(shared):
     np.testing.assert_allclose(answer.peak_effort, np.abs(tau).max(axis=0), rtol=1e-12)
 
 
-def test_a_joint_that_stands_still_is_judged_as_well(shared):
-    names, moved = (
-        ('elbow_pitch', 'shoulder_yaw'),
-        [ARM.joint_names.index('elbow_pitch'), ARM.joint_names.index('shoulder_yaw')],
-    )
+def test_limits_of_joints_outside_the_trajectory_count(shared):
+    names = ('elbow_pitch', 'shoulder_yaw')
+    moved = [ARM.joint_names.index(name) for name in names]
     q, qd, qdd = np.zeros((3, 2, 2))
     qdd[1, 0] = 100.0
     sent = message([0.0, 1.0], q, qd, qdd, names)
@@ -142,7 +137,7 @@ def test_a_joint_that_stands_still_is_judged_as_well(shared):
         values[:, moved] = given
     tau, limits = np.abs(ARM.inverse_dynamics(*whole)), ARM.effort_limits
     pitch = ARM.joint_names.index('shoulder_pitch')
-    # The moved joints are within their limits, and the one that carries them is not.
+    # The moved joints are within their limits; the joint that carries them is not.
     assert (tau[:, moved] <= limits[moved]).all() and tau[1, pitch] > limits[pitch]
     assert efforts(answer).shape == (2, 2)
     assert not answer.within_limits
@@ -153,7 +148,7 @@ def test_a_joint_that_stands_still_is_judged_as_well(shared):
         '1 point above the effort limit of shoulder_pitch (not in the trajectory: up to '
         f'{tau[1, pitch]:.6g} of {limits[pitch]:.6g})'
     ) in answer.message
-    answer = largest(shared, trajectory=sent, link='hand')
+    answer = shared.ask(GetMaxPayload, trajectory=sent, link='hand')
     assert (answer.mass, answer.limiting_joint) == (0.0, 'shoulder_pitch')
     assert (
         'shoulder_pitch is not in joint_names: it needs '
@@ -172,7 +167,7 @@ def test_positions_of_a_trajectory_beyond_their_limits_are_named(shared):
     ) in answer.message
 
 
-def test_some_joints_move_the_others_stand_where_they_are(client, start):
+def test_joints_outside_the_trajectory_stand_still(client, start):
     start(robot_description_file=ARM7, joints=f'[{", ".join(ARM.joint_names[:4])}]')
     time = np.linspace(0.0, 1.0, 3)
     q, qd, qdd = (values[:, [2, 1]] for values in motion(time))
@@ -187,54 +182,78 @@ def test_some_joints_move_the_others_stand_where_they_are(client, start):
         '; taken where last measured, or neutral if never: '
         + ', '.join(ARM.joint_names[i] for i in (0, 3, 4, 5, 6, 7))
     ) in answer.message
-    # No names: the chosen joints.
+    # Without names: the chosen joints.
     q4, qd4, qdd4 = (values[:, :4] for values in motion(time))
     answer = ask(client, message(time, q4, qd4, qdd4, names=[]))
     assert answer.trajectory.joint_names == list(ARM.joint_names[:4])
 
 
-def test_what_is_no_trajectory_is_refused_in_words(shared):
-    time = np.array([0.0, 1.0, 1.0])
-    q, qd, qdd = motion(time)
-    nan = q.copy()
-    nan[1, 2] = np.nan
-    no_rates = message(time, q, qd, qdd)
-    no_rates.points[0].velocities = []
-    no_rates.points[1].velocities = [np.nan] * N
-    backwards = message(time, q)
-    short = message(time, q, qd)
-    short.points[1].velocities = [1.0]
-    without = message(time, q)
-    without.points[2].positions = []
-    cases = [
+TIME = np.array([0.0, 1.0, 2.0])
+POSITIONS, VELOCITIES, ACCELERATIONS = motion(TIME)
+FULL = (POSITIONS, VELOCITIES, ACCELERATIONS)
+
+
+def with_nan(values):
+    values = values.copy()
+    values[1, 2] = np.nan
+    return values
+
+
+def changed(trajectory, **fields):
+    """Return a trajectory with other fields of its points: name_of_field=(point, value)."""
+    for name, (point, value) in fields.items():
+        setattr(trajectory.points[point], name, value)
+    return trajectory
+
+
+@pytest.mark.parametrize(
+    'trajectory, reason',
+    [
         (JointTrajectory(), 'expected at least one point, got none'),
-        (backwards, 'time: point 2: expected more than 1.0 s'),
-        (short, r'trajectory.points[1].velocities: expected 8 numbers for'),
-        (without, r'trajectory.points[2].positions: expected 8 numbers'),
+        (message([0.0, 1.0, 1.0], POSITIONS), 'time: point 2: expected more than 1.0 s'),
         (
-            message(time, nan, qd, qdd),
-            'trajectory.points[1].positions: expected finite '
-            f'numbers, or none; got nan for {ARM.joint_names[2]}',
+            changed(message(TIME, POSITIONS, VELOCITIES), velocities=(1, [1.0])),
+            'trajectory.points[1].velocities: expected 8 numbers for',
         ),
-        (no_rates, 'trajectory.points[1].velocities: expected finite numbers, or none; got'),
         (
-            message(time, q, names=[*ARM.joint_names[:-1], 'elbow_pich']),
+            changed(message(TIME, POSITIONS), positions=(2, [])),
+            'trajectory.points[2].positions: expected 8 numbers',
+        ),
+        (
+            message(TIME, with_nan(POSITIONS), VELOCITIES, ACCELERATIONS),
+            'trajectory.points[1].positions: expected finite numbers, or none; got nan for '
+            + ARM.joint_names[2],
+        ),
+        (
+            # The first point has none: the place of the second is still named.
+            changed(
+                changed(message(TIME, *FULL), velocities=(0, [])), velocities=(1, [np.nan] * N)
+            ),
+            'trajectory.points[1].velocities: expected finite numbers, or none; got',
+        ),
+        (
+            message(TIME, POSITIONS, VELOCITIES, with_nan(ACCELERATIONS)),
+            'trajectory.points[1].accelerations: expected finite',
+        ),
+        (
+            message(TIME, POSITIONS, names=[*ARM.joint_names[:-1], 'elbow_pich']),
             "'elbow_pich' is not a joint that can be moved, is 'elbow_pitch' meant?",
         ),
-        (message(time, q, qd, nan), 'trajectory.points[1].accelerations: expected finite'),
-        (message(time, q[:, :1], names=['\x1b[2J']), r"'\x1b[2J' is not a joint"),
-        (message(time, q[:, :1], names=['nose']), "'nose' is not a joint"),
-        (message(time, q, 1e300 + qd, qdd), 'the result is not finite'),
-    ]
-    for trajectory, reason in cases:
-        answer = ask(shared, trajectory)
-        assert not answer.success
-        assert reason in answer.message
-        assert answer.trajectory == JointTrajectory()
-        assert not len(answer.peak_effort)
+        (message(TIME, POSITIONS[:, :1], names=['\x1b[2J']), r"'\x1b[2J' is not a joint"),
+        (message(TIME, POSITIONS[:, :1], names=['nose']), "'nose' is not a joint"),
+        (message(TIME, POSITIONS, 1e300 + VELOCITIES, ACCELERATIONS), 'the result is not finite'),
+    ],
+    ids=lambda item: item if isinstance(item, str) else '',
+)
+def test_a_wrong_trajectory_is_refused_with_the_reason(shared, trajectory, reason):
+    answer = ask(shared, trajectory)
+    assert not answer.success
+    assert reason in answer.message
+    assert answer.trajectory == JointTrajectory()
+    assert not len(answer.peak_effort)
 
 
-def test_a_long_one_is_refused_while_efforts_are_sent():
+def test_a_long_trajectory_is_refused_while_the_output_is_on():
     node = types.SimpleNamespace(get_logger=lambda: None, create_service=lambda *_, **__: None)
     path = types.SimpleNamespace(is_on=True)
     context = NodeContext(node, check_all({}), ActiveRobot(ARM, ()))
@@ -261,35 +280,11 @@ def test_a_long_one_is_refused_while_efforts_are_sent():
 # The largest payload -----------------------------------------------------------------------
 
 
-def largest(client, **fields):
-    """Call ~/get_max_payload."""
-    return client.call(
-        GetMaxPayload, '/dynamics_node/get_max_payload', GetMaxPayload.Request(**fields)
-    )
-
-
-def scale(client, gains):
-    """Set the parameter effort_scale."""
-    assert (
-        client.call(
-            SetParameters,
-            '/dynamics_node/set_parameters',
-            SetParameters.Request(
-                parameters=[
-                    Parameter(
-                        name='effort_scale', value=ParameterValue(type=8, double_array_value=gains)
-                    )
-                ]
-            ),
-        )
-        .results[0]
-        .successful
-    )
-
-
-def test_with_the_largest_payload_pinocchio_is_at_the_limit(shared):
+def test_the_largest_payload_brings_a_joint_to_its_limit_by_pinocchio(shared):
     q, point = np.linspace(0.8, -0.6, N), (0.02, 0.01, 0.1)
-    answer = largest(shared, position=q.tolist(), link='hand', point=Point(x=0.02, y=0.01, z=0.1))
+    answer = shared.ask(
+        GetMaxPayload, position=q.tolist(), link='hand', point=Point(x=0.02, y=0.01, z=0.1)
+    )
     assert answer.success, answer.message
     assert answer.limiting_joint in answer.message
     joint = ARM.joint_names.index(answer.limiting_joint)
@@ -303,10 +298,10 @@ def test_with_the_largest_payload_pinocchio_is_at_the_limit(shared):
     assert answer.limiting_point == -1
 
 
-def test_over_a_trajectory_it_is_the_least_of_all_points(shared):
+def test_the_largest_payload_over_a_trajectory_is_the_least_of_all_points(shared):
     time = np.linspace(0.0, 2.0, 21)
     states = motion(time)
-    answer = largest(shared, trajectory=message(time, *states), link='hand')
+    answer = shared.ask(GetMaxPayload, trajectory=message(time, *states), link='hand')
     assert answer.success, answer.message
     most = ARM.max_payload(states[0], 'hand', qd=states[1], qdd=states[2])
     mass, joint, (place,) = most.least()
@@ -316,36 +311,44 @@ def test_over_a_trajectory_it_is_the_least_of_all_points(shared):
     assert 'over the trajectory' in answer.message
 
 
-def test_the_limits_are_those_of_the_parameter_and_nothing_may_be_in_the_way(client, start):
+def test_the_largest_payload_depends_on_the_parameters_and_may_be_infinite(client, start):
     low = ARM.effort_limits / 1.5
     start(robot_description_file=ARM7, effort_limits=str(low.tolist()))
     q = np.linspace(0.8, -0.6, N)
-    answer = largest(client, position=q.tolist(), link='hand')
-    expected = ARM.max_payload(q, 'hand', effort_limits=low)
-    assert answer.mass == pytest.approx(float(expected.mass), rel=1e-12)
-    assert 0.0 < answer.mass < 0.8 * float(ARM.max_payload(q, 'hand').mass)
-    # What the node sends is limited after its gains.
-    scale(client, [1.25] * N)
-    answer = largest(client, position=q.tolist(), link='hand')
-    expected = ARM.max_payload(q, 'hand', effort_limits=low / 1.25)
-    assert answer.mass == pytest.approx(float(expected.mass), rel=1e-12)
+
+    def ask(link='hand', **fields):
+        return client.ask(GetMaxPayload, position=q.tolist(), link=link, **fields)
+
+    def largest(limits):
+        return float(ARM.max_payload(q, 'hand', effort_limits=limits).mass)
+
+    def scale(gains):
+        result = client.set_node_parameter('effort_scale', gains)
+        assert result.successful, result.reason
+
+    assert ask().mass == pytest.approx(largest(low), rel=1e-12)
+    assert 0.0 < ask().mass < 0.8 * largest(ARM.effort_limits)
+    # The limits apply after the gains.
+    scale([1.25] * N)
+    answer = ask()
+    assert answer.mass == pytest.approx(largest(low / 1.25), rel=1e-12)
     np.testing.assert_allclose(answer.effort_limits, low / 1.25)
-    # A joint to which nothing is sent limits nothing.
     assert answer.limiting_joint == ARM.joint_names[1]
-    scale(client, [1.25, 0.0, *[1.25] * (N - 2)])
-    answer = largest(client, position=q.tolist(), link='hand')
+    # A joint without effort has no limit.
+    scale([1.25, 0.0, *[1.25] * (N - 2)])
+    answer = ask()
     assert answer.success and answer.limiting_joint != ARM.joint_names[1]
     assert np.isnan(answer.effort_limits[1])
-    assert answer.mass > float(expected.mass)
-    answer = largest(client, position=q.tolist(), link='base')
+    assert answer.mass > largest(low / 1.25)
+    answer = ask('base')
     assert (answer.mass, answer.limiting_joint) == (np.inf, '')
     assert answer.message.startswith('no effort limit is in the way')
-    answer = largest(client, position=q.tolist(), link='nose')
+    answer = ask('nose')
     assert not answer.success
     assert np.isnan(answer.mass)
     assert len(answer.effort) == len(answer.joint_names) == 0
-    # So far away that one kilogram there is more than numbers can hold.
-    answer = largest(client, position=q.tolist(), link='hand', point=Point(x=1e160))
+    # So far away that the torque of one kilogram exceeds double precision.
+    answer = ask(point=Point(x=1e160))
     assert not answer.success
     assert 'the result is not finite' in answer.message
     assert np.isnan(answer.mass)

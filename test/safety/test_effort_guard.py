@@ -1,4 +1,4 @@
-"""The effort guard without ROS: what passes, what fades, and what begins."""
+"""The effort guard without ROS: passing, fading and the begin of commands."""
 
 from array import array
 from dataclasses import replace
@@ -12,7 +12,7 @@ from dynamics_node.safety.effort_guard import (
     GuardSettings,
     LONGEST_FADE,
     LONGEST_STEP,
-    LOOK_EVERY,
+    MAX_TICK,
     NEAR,
     OWN_STALL,
 )
@@ -26,15 +26,15 @@ PERIOD = 0.01
 
 
 class Bench:
-    """A guard on a clock that the test turns; everything it returns is recorded."""
+    """A guard with a simulated clock; all outputs are recorded."""
 
     def __init__(self, settings=SETTINGS, obstacle=None, is_found=True):
         self.states = []
         self.guard = EffortGuard(
             settings, lambda state, reason: self.states.append(state.name), obstacle
         )
-        self.now, self.outputs, self._next_look = 100.0, [], 0.0
-        self.look()
+        self.now, self.outputs, self._next_tick = 100.0, [], 0.0
+        self.tick()
         if is_found:
             self.guard.source_appeared(self.now)
             self.wait(0.2)
@@ -47,20 +47,20 @@ class Bench:
     def last(self):
         return self.outputs[-1][1] if self.outputs else None
 
-    def look(self):
-        self._record(self.guard.look(self.now))
-        self._next_look = self.now + self.guard.next_look(self.now)
+    def tick(self):
+        self._record(self.guard.tick(self.now))
+        self._next_tick = self.now + self.guard.next_tick_in(self.now)
 
     def send(self, *efforts):
-        """Send one command; return what comes out."""
+        """Send one command; return the output."""
         return self._record(self.guard.on_command(self.now, array('d', efforts)))
 
     def wait(self, seconds):
-        """Let time pass, and the guard look whenever it wants to."""
+        """Let time pass, with all ticks of the guard."""
         end = self.now + seconds
-        while self._next_look <= end:
-            self.now = max(self.now, self._next_look)
-            self.look()
+        while self._next_tick <= end:
+            self.now = max(self.now, self._next_tick)
+            self.tick()
         self.now = end
 
     def stream(self, seconds, efforts=FULL, period=PERIOD):
@@ -70,7 +70,7 @@ class Bench:
             self.wait(period)
 
     def start(self, efforts=FULL, ramp=0.5):
-        """Send what the node sends when it is enabled."""
+        """Send the start ramp of the node."""
         steps = round(ramp / PERIOD)
         for i in range(1, steps + 1):
             self.send(*(i / steps * effort for effort in efforts))
@@ -78,7 +78,7 @@ class Bench:
         assert self.state == 'ACTIVE'
 
     def freeze(self, seconds):
-        """Let time pass without the guard running."""
+        """Let time pass while the guard stands still."""
         self.now += seconds
 
     def _record(self, output):
@@ -100,7 +100,7 @@ def active(bench):
 
 
 def is_fading(outputs, start=FULL):
-    """Tell whether outputs go to zero in proportion, none larger than the one before."""
+    """Tell whether outputs decrease monotonically and in proportion."""
     factors = [output[0] / start[0] for output in outputs]
     return factors == sorted(factors, reverse=True) and all(
         output == pytest.approx([factor * effort for effort in start])
@@ -111,13 +111,13 @@ def is_fading(outputs, start=FULL):
 # Passing -------------------------------------------------------------------------------------
 
 
-def test_commands_pass_as_they_are(bench):
+def test_commands_pass_unchanged(bench):
     command = array('d', FULL)
     assert bench.guard.on_command(bench.now, command) is command
     assert bench.states == ['ACTIVE']
 
 
-def test_nothing_comes_out_before_a_command_and_after_the_last_zero(bench):
+def test_there_is_no_output_before_a_command_and_after_the_last_zero(bench):
     bench.wait(1.0)
     assert bench.outputs == []
     bench.start()
@@ -129,7 +129,7 @@ def test_nothing_comes_out_before_a_command_and_after_the_last_zero(bench):
     assert bench.guard.fades == 0
 
 
-def test_it_can_begin_again_after_an_end_at_zero(active):
+def test_commands_can_begin_again_after_an_end_at_zero(active):
     active.send(0.0, 0.0, 0.0)
     active.wait(0.3)
     active.start()
@@ -137,7 +137,7 @@ def test_it_can_begin_again_after_an_end_at_zero(active):
     assert active.states == ['ACTIVE', 'READY', 'ACTIVE']
 
 
-def test_a_step_of_the_node_is_the_nodes_business(active):
+def test_a_step_in_the_commands_passes(active):
     assert active.send(-40.0, 8.0, 0.0) is not None
 
 
@@ -175,7 +175,7 @@ def test_silence_fades_in_time_and_ends_in_fault(active):
         ((0.0, math.inf, 0.0), 'not finite'),
     ],
 )
-def test_what_is_no_command_counts_as_silence(active, bad, kind):
+def test_an_invalid_command_counts_as_silence(active, bad, kind):
     before = len(active.outputs)
     for _ in range(100):
         assert active.send(*bad) is None
@@ -186,7 +186,7 @@ def test_what_is_no_command_counts_as_silence(active, bad, kind):
     assert is_fading([output for _, output in active.outputs[before:]])
 
 
-def test_the_controllers_number_of_joints_counts_before_anything_has_passed(bench):
+def test_the_number_of_joints_of_the_controller_counts_before_the_first_command(bench):
     bench.guard.joint_count = 3
     assert bench.send(1.0, 2.0) is None
     assert bench.send(1.0, 2.0, 3.0) is not None
@@ -221,7 +221,7 @@ def test_a_short_silence_is_bridged_without_a_step(active):
     assert max(abs(b - a) for a, b in itertools.pairwise(outputs[60:])) <= rate * LONGEST_STEP
 
 
-def test_commands_that_come_slowly_are_told_of_with_their_period(bench):
+def test_the_period_of_slow_commands_is_reported(bench):
     bench.stream(1.0, period=0.015)
     assert bench.guard.slow_period() is None
     bench.stream(1.0, period=0.02)
@@ -231,9 +231,9 @@ def test_commands_that_come_slowly_are_told_of_with_their_period(bench):
     assert fast.guard.slow_period() is None
 
 
-def test_a_command_that_waits_behind_a_late_look_is_in_time(active):
+def test_a_command_waiting_behind_a_late_tick_is_in_time(active):
     active.freeze(SETTINGS.timeout + 0.01)
-    active.look()
+    active.tick()
     assert active.send(*FULL) is not None
     active.wait(PERIOD)
     assert active.state == 'ACTIVE' and active.guard.fades == 0
@@ -255,10 +255,10 @@ def test_commands_that_go_on_after_a_fade_do_not_pass(faded):
     assert len(faded.outputs) == before
     assert faded.state == 'FAULT'
     assert 'commands begin with up to 40, too far from zero' in faded.guard.reason
-    assert faded.states.count('FAULT') == 2  # which is not told with every command
+    assert faded.states.count('FAULT') == 2  # not repeated with every command
 
 
-def test_neither_does_their_way_to_zero_but_the_start_after_it_passes(faded):
+def test_their_ramp_to_zero_does_not_pass_but_the_start_after_it_does(faded):
     faded.stream(0.2)
     before = len(faded.outputs)
     for i in range(50, -1, -1):
@@ -271,15 +271,15 @@ def test_neither_does_their_way_to_zero_but_the_start_after_it_passes(faded):
     assert faded.last == list(FULL)
 
 
-def test_a_new_source_that_begins_near_zero_is_taken(faded):
-    # The node has died without a zero, and another one is enabled.
+def test_a_new_source_that_begins_near_zero_passes(faded):
+    # The node has died without sending zeros, and another one is enabled.
     faded.guard.source_appeared(faded.now)
     faded.wait(1.0)
     faded.start()
     assert faded.last == list(FULL)
 
 
-def test_zeros_between_full_commands_arm_nothing(faded):
+def test_zeros_between_full_commands_do_not_rearm(faded):
     for _ in range(20):
         faded.send(0.0, 0.0, 0.0)
         assert faded.send(*FULL) is None
@@ -298,7 +298,7 @@ def test_commands_that_go_on_late_in_a_fade_do_not_pass(active):
     assert active.guard.refused['during a fade'] > 10
 
 
-def test_reset_lets_them_pass_by_a_ramp(faded):
+def test_commands_pass_by_a_ramp_after_reset(faded):
     faded.stream(0.1)
     success, message = faded.guard.reset(faded.now)
     assert success and 'within 0.5 s' in message
@@ -312,7 +312,7 @@ def test_reset_lets_them_pass_by_a_ramp(faded):
     assert 'STARTING' in faded.states
 
 
-def test_reset_is_not_kept_for_silence_in_its_ramp(faded):
+def test_a_silence_in_the_ramp_after_reset_cancels_the_reset(faded):
     faded.guard.reset(faded.now)
     faded.send(*FULL)
     faded.wait(3.0)
@@ -325,10 +325,10 @@ def test_reset_without_a_fault_is_refused(active):
     assert not success and 'nothing to reset: ACTIVE' in message
 
 
-# The beginning -------------------------------------------------------------------------------
+# The begin of commands -----------------------------------------------------------------------
 
 
-def test_a_guard_that_comes_later_than_the_commands_does_not_begin_with_them():
+def test_a_guard_started_after_the_commands_does_not_pass_them():
     bench = Bench(is_found=False)
     bench.stream(0.3)
     assert bench.outputs == [] and bench.state == 'FAULT'
@@ -350,7 +350,7 @@ def test_with_effort_limits_a_beginning_far_from_zero_is_refused():
     assert bench.send(0.09 * 87.0, 0.0, 0.0) is not None
 
 
-def test_an_obstacle_keeps_an_effort_from_beginning_but_no_zero():
+def test_an_obstacle_refuses_first_efforts_but_not_zeros():
     reasons = ['nothing listens']
     bench = Bench(obstacle=lambda: reasons[0])
     assert bench.send(0.1, 0.0, 0.0) is None
@@ -362,15 +362,15 @@ def test_an_obstacle_keeps_an_effort_from_beginning_but_no_zero():
     bench.start()
 
 
-# Its own end and its own standstill ----------------------------------------------------------
+# End and standstill of the guard ------------------------------------------------------------
 
 
 @pytest.mark.parametrize('within', [2.5, 0.2])
-def test_at_its_own_end_it_fades_whatever_comes(active, within):
+def test_end_fades_and_refuses_all_commands(active, within):
     begin = active.now
     active.guard.end(begin, within, 'SIGTERM')
     before = len(active.outputs)
-    active.look()
+    active.tick()
     active.stream(1.0)
     fade = active.outputs[before:]
     assert is_fading([output for _, output in fade])
@@ -378,9 +378,9 @@ def test_at_its_own_end_it_fades_whatever_comes(active, within):
     assert fade[-1][0] - begin <= min(within, SETTINGS.stop_ramp) + 2 * FADE_PERIOD
 
 
-def test_its_own_end_may_be_hurried(active):
+def test_a_second_end_shortens_the_fade(active):
     active.guard.end(active.now, 2.5, 'SIGINT')
-    active.look()
+    active.tick()
     active.wait(0.1)
     active.guard.end(active.now, 0.1, 'SIGINT again')
     active.wait(0.13)
@@ -388,19 +388,19 @@ def test_its_own_end_may_be_hurried(active):
     assert active.guard.drop() == [0.0] * 3
 
 
-def test_its_own_end_at_rest_has_nothing_to_do(bench):
+def test_end_without_effort_has_no_effect(bench):
     bench.guard.end(bench.now, 2.5, 'SIGTERM')
     assert not bench.guard.has_effort
     assert bench.send(*FULL) is None
 
 
-def test_after_its_own_standstill_it_approaches_the_commands(active):
+def test_after_a_standstill_of_the_guard_it_approaches_the_commands(active):
     active.freeze(1.0)
     before = len(active.outputs)
     other = (20.0, 8.0, 0.0)
     active.send(*other)
     assert active.state == 'STARTING' and 'stood still for 1.0' in active.guard.reason
-    active.look()
+    active.tick()
     active.stream(1.2, other)
     assert active.state == 'ACTIVE' and active.last == list(other)
     outputs = [FULL] + [output for _, output in active.outputs[before:]]
@@ -411,9 +411,9 @@ def test_after_its_own_standstill_it_approaches_the_commands(active):
     assert active.guard.stalls == 1
 
 
-def test_after_its_own_standstill_commands_that_are_the_same_pass(active):
+def test_after_a_standstill_of_the_guard_unchanged_commands_pass(active):
     active.freeze(1.0)
-    active.look()
+    active.tick()
     active.send(*FULL)
     assert active.state == 'ACTIVE' and active.last == list(FULL)
 
@@ -422,13 +422,13 @@ def test_a_standstill_in_a_fade_makes_no_step(active):
     active.wait(0.1)
     before = active.last
     active.freeze(1.0)
-    active.look()
+    active.tick()
     assert before[0] - active.last[0] <= FULL[0] * LONGEST_STEP / SETTINGS.stop_ramp + 1e-9
     active.wait(1.0)
     assert active.last == [0.0] * 3
 
 
-def test_an_observer_that_fails_changes_nothing():
+def test_a_failing_observer_has_no_effect():
     def fail(state, reason):
         raise RuntimeError('observer')
 
@@ -438,7 +438,7 @@ def test_an_observer_that_fails_changes_nothing():
     assert guard.state.name == 'ACTIVE'
 
 
-# Whatever comes ------------------------------------------------------------------------------
+# Random sequences ----------------------------------------------------------------------------
 
 EFFORT = st.one_of(st.floats(-50.0, 50.0), st.just(0.0))
 COMMAND = st.one_of(
@@ -463,18 +463,18 @@ RATES = st.one_of(st.just(()), st.just((60.0, 30.0)))
 
 
 class Judge(Bench):
-    """Holds every output against what the guard promises, from what can be seen of it."""
+    """Checks every output against the specification, from observable values only."""
 
     def __init__(self, settings):
         self.force, self.scale, self.input = [0.0, 0.0], [0.0, 0.0], None
         super().__init__(settings)
         self.guard.joint_count = 2
 
-    def look(self):
+    def tick(self):
         before = list(self.force)
         self.input = None
-        super().look()
-        # A look never starts and never enlarges an effort, and its steps are small.
+        super().tick()
+        # A tick never starts and never increases an effort, and its steps are small.
         ramp = self.guard.settings.stop_ramp
         for last, new, largest in zip(before, self.force, self.scale, strict=True):
             assert abs(new) <= abs(last) and new * last >= 0.0
@@ -491,12 +491,12 @@ class Judge(Bench):
             min(max(effort, -limit), limit) for effort, limit in zip(efforts, limits, strict=True)
         ]
         if list(output) != list(efforts):
-            # On the way from what is in force to the command, or from the way's beginning.
+            # Between the effort in force (or the first output of the approach) and the command.
             start = self.guard._start if self.guard.state.name == 'STARTING' else before
             for low, value, high in zip(start, output, wanted, strict=True):
                 assert min(low, high) - 1e-9 <= value <= max(low, high) + 1e-9
         if was == 'FAULT' and any(output):
-            # After a fade an effort begins near zero, or not at all.
+            # After a fade, commands only pass if they begin near zero.
             most = max(self.scale) or max(limits)
             assert max(map(abs, output)) <= NEAR * most + 1e-9
         self.scale = [
@@ -531,7 +531,7 @@ def test_whatever_comes_no_effort_starts_by_itself_and_every_silence_ends_at_zer
             judge.freeze(value)
         elif kind == 'late':
             judge.freeze(value)
-            judge.look()
+            judge.tick()
         elif kind == 'reset':
             judge.guard.reset(judge.now)
         else:
@@ -539,10 +539,10 @@ def test_whatever_comes_no_effort_starts_by_itself_and_every_silence_ends_at_zer
     longest = max(
         [SETTINGS.stop_ramp] + [abs(effort) / rate for effort, rate in zip(judge.force, rates)]
     )
-    judge.wait(SETTINGS.timeout + LOOK_EVERY + CONFIRM_AFTER + longest + 3 * FADE_PERIOD)
+    judge.wait(SETTINGS.timeout + MAX_TICK + CONFIRM_AFTER + longest + 3 * FADE_PERIOD)
     assert judge.force == [0.0, 0.0] and not judge.guard.has_effort
     assert judge.state in ('READY', 'FAULT')
 
 
-def test_it_notices_its_own_standstill_later_than_it_looks():
-    assert OWN_STALL >= 2 * LOOK_EVERY
+def test_a_standstill_is_longer_than_the_longest_tick():
+    assert OWN_STALL >= 2 * MAX_TICK

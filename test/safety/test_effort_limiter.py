@@ -1,4 +1,4 @@
-"""The limiter: whatever comes in, what goes out is finite, limited and one step away."""
+"""The limiter: every command is finite, limited and one step from the last one."""
 
 from dynamics_node.safety import EffortLimiter, InvalidEffortError
 from hypothesis import given
@@ -15,7 +15,7 @@ def limiter(scale=(1.0, 1.0)):
 
 
 def command(unit, effort, ramp, dt):
-    """Return the next command on the way to a part of an effort."""
+    """Return the next command toward a fraction of an effort."""
     return unit.step([ramp * value for value in unit.target(np.array(effort))], dt)
 
 
@@ -24,7 +24,7 @@ def command(unit, effort, ramp, dt):
         st.tuples(st.tuples(any_float, any_float), st.floats(0, 1), st.floats(-1, 1)), max_size=30
     )
 )
-def test_no_sequence_of_efforts_gets_past_the_limits(sequence):
+def test_no_sequence_of_efforts_exceeds_the_limits(sequence):
     unit = limiter((1.5, 0.5))
     last = np.zeros(2)
     for effort, ramp, dt in sequence:
@@ -41,7 +41,7 @@ def test_no_sequence_of_efforts_gets_past_the_limits(sequence):
         last = sent
 
 
-def test_an_effort_within_everything_passes_unchanged():
+def test_an_effort_within_all_limits_passes_unchanged():
     np.testing.assert_array_equal(command(limiter(), [3.0, -1.0], 1.0, 1.0), [3.0, -1.0])
 
 
@@ -67,14 +67,14 @@ def test_a_step_is_limited_by_the_time_since_the_last_command():
     assert unit.rate_limited == 2
 
 
-def test_infinity_is_refused_although_a_clamp_would_swallow_it_only_if_not_finite_after_all():
-    # +inf clamps to the limit, which is a safe number; NaN stays NaN and is refused.
+def test_infinity_is_clamped_and_nan_is_refused():
+    # +inf is clamped to the limit, which is safe; NaN stays NaN and is refused.
     np.testing.assert_array_equal(command(limiter(), [np.inf, 0.0], 1.0, 1.0), [10.0, 0.0])
     with pytest.raises(InvalidEffortError, match='expected finite efforts'):
         command(limiter(), [np.nan, 0.0], 1.0, 1.0)
 
 
-def test_the_last_command_is_told_by_joint():
+def test_the_last_command_is_described_by_joint():
     unit = EffortLimiter(LIMITS, RATES, np.ones(2), ('shoulder', 'elbow'))
     command(unit, [3.0, -1.0], 1.0, 1.0)
     assert unit.describe_last() == 'shoulder: 3, elbow: -1'
@@ -86,7 +86,7 @@ def test_another_length_is_refused():
             command(limiter(), effort, 1.0, 1.0)
 
 
-def test_a_new_limiter_carries_on_from_the_old_ones_command():
+def test_a_new_limiter_continues_from_the_last_command():
     old, new = limiter(), limiter()
     command(old, [9.0, 2.0], 1.0, 0.01)
     new.carry_on_from(old)
@@ -102,7 +102,7 @@ def test_a_stop_may_step_further_than_the_rate_limit():
     assert unit.is_held_back
 
 
-def test_a_command_that_was_not_sent_is_taken_back():
+def test_an_unsent_command_is_withdrawn():
     unit = limiter()
     command(unit, [9.0, 2.0], 1.0, 0.01)
     sent = unit.last

@@ -1,4 +1,4 @@
-"""Ramps, steps and stops, with a clock that the test turns."""
+"""Ramps, steps and stops, with a simulated clock."""
 
 from dynamics_node.safety import EffortLimiter, EffortOutput, OutputSettings, OutputState
 from dynamics_node.safety.effort_output import (
@@ -18,7 +18,7 @@ PERIOD = 0.01
 
 
 class Bench:
-    """An output, and the loop around it: states every PERIOD, ticks, and what was sent."""
+    """An output and the loop around it: states every PERIOD, ticks, and the sent commands."""
 
     def __init__(self, stop_behavior='ramp_to_zero', limits=LIMITS, rates=RATES, **changes):
         settings = {'state_timeout': 0.1, 'start_ramp': 0.5, 'stop_ramp': 1.0, **changes}
@@ -44,7 +44,7 @@ class Bench:
         return self
 
     def follow(self, effort=TORQUE, seconds=0.0, period=PERIOD):
-        """Take states for some time, at least one."""
+        """Process states for some time, at least one."""
         end = self.now + seconds
         while True:
             self.now += period
@@ -53,7 +53,7 @@ class Bench:
                 return command
 
     def tick(self, seconds, period=STOP_PERIOD):
-        """Tick for some time; return what was sent."""
+        """Tick for some time; return the sent commands."""
         begin, end = len(self.sent), self.now + seconds
         while self.now < end - 1e-9:
             self.now += period
@@ -61,7 +61,7 @@ class Bench:
         return np.array(self.sent[begin:])
 
     def active(self):
-        """Return self, ACTIVE with the whole torque out."""
+        """Return self, ACTIVE with the full torque."""
         self.start().follow(seconds=1.0)
         assert self.name == 'ACTIVE'
         np.testing.assert_array_equal(self.sent[-1], TORQUE)
@@ -72,7 +72,7 @@ class Bench:
         return self.output.machine.name
 
 
-def test_nothing_goes_out_while_off():
+def test_there_is_no_command_while_off():
     bench = Bench()
     assert bench.follow() is None
     assert bench.tick(0.1).size == 0
@@ -97,13 +97,13 @@ def test_the_first_command_repeats_the_efforts_in_force_and_steps_count_from_it(
 
 def test_a_stop_before_the_first_command_ends():
     bench = Bench().start()
-    bench.output.stop(bench.now, 'asked')
+    bench.output.stop(bench.now, 'disabled')
     bench.tick(1.5)
     assert bench.name == 'READY'
 
 
-def test_active_is_said_after_the_full_effort_has_gone_out_and_not_before():
-    # Rate limits so small that the effort is far from full when the ramp's time is over.
+def test_active_is_entered_after_the_full_effort_is_published():
+    # Rate limits so small that the effort is far from full at the end of the ramp.
     bench = Bench(rates=np.array([2.0, 2.0])).start()
     bench.follow(seconds=1.0)
     assert bench.name == 'STARTING'
@@ -113,7 +113,7 @@ def test_active_is_said_after_the_full_effort_has_gone_out_and_not_before():
 
 
 def test_a_slow_stream_of_states_does_not_skip_the_ramp():
-    # States once a second; in between the ramp goes on by ticks.
+    # States once a second; in between the ramp continues by ticks.
     bench = Bench(state_timeout=2.0).start()
     bench.follow(period=1.0)
     bench.tick(0.99)
@@ -162,7 +162,7 @@ def test_a_stop_ramps_to_zero_and_ends_with_zeros():
 @pytest.mark.parametrize(
     'behavior, ramp', [('zero', 60.0), ('ramp_to_zero', 0.0), ('ramp_to_zero', 0.3)]
 )
-def test_every_stop_ends_in_time_whatever_the_rate_limits_say(behavior, ramp, rates):
+def test_every_stop_ends_in_time_for_any_rate_limits(behavior, ramp, rates):
     bench = Bench(behavior, stop_ramp=ramp).active()
     bench.output.set_limiter(EffortLimiter(LIMITS, rates, np.ones(2)))
     bench.output.stop(bench.now, 'test')
@@ -180,7 +180,7 @@ def test_lower_limits_do_not_slow_the_stop():
     np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
 
 
-def test_a_fault_has_a_short_ramp_and_hastens_a_long_one():
+def test_a_fault_has_a_short_ramp_and_shortens_a_long_one():
     bench = Bench(stop_ramp=60.0).active()
     bench.output.stop(bench.now, 'disabled')
     bench.tick(5.0)
@@ -191,7 +191,7 @@ def test_a_fault_has_a_short_ramp_and_hastens_a_long_one():
     assert bench.output.machine.reason == 'runaway'
 
 
-def test_a_stop_is_hastened_when_the_process_has_to_end_and_never_slowed():
+def test_a_second_stop_can_only_shorten_the_first():
     bench = Bench(stop_ramp=60.0).active()
     bench.output.stop(bench.now, 'SIGTERM', within=2.5)
     bench.tick(0.5)
@@ -210,7 +210,7 @@ def test_hold_leaves_the_last_command_in_force_and_is_a_state_of_its_own():
     assert bench.output.has_effort_in_force
     assert bench.tick(0.5).size == 0
     assert len(bench.sent) == count
-    # Released: by the stop ramp, and the fault that was latched meanwhile stays.
+    # Released by the stop ramp; the fault latched meanwhile stays.
     bench.output.stop(bench.now, 'disabled on request')
     commands = bench.tick(1.1)
     assert (np.abs(np.diff(commands[:, 0])) <= 0.05 * TORQUE[0]).all()
@@ -218,7 +218,7 @@ def test_hold_leaves_the_last_command_in_force_and_is_a_state_of_its_own():
     assert not bench.output.has_effort_in_force
 
 
-def test_what_must_not_be_held_is_not():
+def test_faults_are_not_held():
     bench = Bench('hold').active()
     bench.output.stop(bench.now, 'runaway', is_fault=True)
     bench.tick(1.1)
@@ -226,7 +226,7 @@ def test_what_must_not_be_held_is_not():
     np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
 
 
-def test_a_start_after_hold_begins_at_what_is_held():
+def test_a_start_after_hold_begins_at_the_held_efforts():
     bench = Bench('hold').active()
     bench.output.stop(bench.now, 'stale', is_fault=True, may_hold=True)
     bench.now += 4.0
@@ -237,7 +237,7 @@ def test_a_start_after_hold_begins_at_what_is_held():
     assert bench.output.machine.fault == ''
 
 
-def test_what_was_held_belongs_to_its_joints():
+def test_held_efforts_belong_to_their_joints():
     bench = Bench('hold').active()
     bench.output.stop(bench.now, 'stale', may_hold=True)
     bench.output.set_limiter(EffortLimiter(LIMITS, RATES, np.ones(2), ('other', 'joints')))
@@ -254,7 +254,7 @@ def test_an_effort_that_is_not_finite_stops_from_the_last_valid_one():
     assert 'invalid effort: expected finite efforts' in bench.output.machine.reason
 
 
-def test_limits_that_are_no_numbers_cannot_keep_a_stop_from_ending():
+def test_a_stop_ends_even_with_limits_that_are_nan():
     bench = Bench().active()
     bench.output.set_limiter(EffortLimiter(np.full(2, np.nan), np.full(2, np.nan), np.ones(2)))
     bench.output.stop(bench.now, 'test', is_fault=True)
@@ -289,7 +289,7 @@ def test_many_small_changes_never_add_up_to_a_step():
     np.testing.assert_allclose(bench.sent[-1], total * TORQUE)
 
 
-def test_a_change_during_the_start_takes_its_own_time():
+def test_a_change_during_the_start_has_its_own_ramp():
     bench = Bench().start()
     bench.follow(seconds=0.45)
     bench.output.blend(bench.now, TORQUE - 2.0 * TORQUE)
@@ -301,7 +301,7 @@ def test_a_change_during_the_start_takes_its_own_time():
     np.testing.assert_allclose(bench.sent[-1], 2.0 * TORQUE)
 
 
-def test_small_changes_without_end_do_not_put_active_off():
+def test_endless_small_changes_do_not_delay_active():
     bench = Bench().start()
     for _ in range(100):
         bench.output.blend(bench.now, np.full(2, 1e-4))
@@ -322,7 +322,7 @@ def test_an_effort_above_its_limit_for_too_long_is_a_fault_and_a_moment_is_not()
     )
 
 
-def test_a_controller_that_is_gone_ends_it_at_once_and_keeps_what_the_hardware_may_hold():
+def test_a_lost_controller_ends_the_output_and_its_last_efforts_are_kept():
     bench = Bench().active()
     count = len(bench.sent)
     bench.output.abandon('controller deactivated')
@@ -345,7 +345,7 @@ def test_the_next_tick_is_that_of_a_ramp_or_none():
     bench = Bench()
     assert bench.output.next_tick_in(0.0) == np.inf
     bench.start()
-    assert bench.output.next_tick_in(bench.now) == np.inf  # no state yet, nothing to go on with
+    assert bench.output.next_tick_in(bench.now) == np.inf  # no state yet, so no effort
     bench.follow()
     assert bench.output.next_tick_in(bench.now) == pytest.approx(STOP_PERIOD)
     bench.follow(seconds=1.0)
@@ -354,7 +354,7 @@ def test_the_next_tick_is_that_of_a_ramp_or_none():
     assert bench.output.next_tick_in(bench.now) == STOP_PERIOD
 
 
-def test_every_stop_reason_is_told():
+def test_every_stop_reason_is_reported():
     bench = Bench().active()
     bench.output.stop(bench.now, 'disabled on request')
     bench.tick(1.1)

@@ -1,4 +1,4 @@
-"""Gravity while an arm is driven: it turns slowly, whatever the number of calls."""
+"""Gravity while an arm is driven: it turns slowly, for any number of calls."""
 
 import math
 
@@ -33,7 +33,7 @@ def test_a_small_turn_is_accepted_at_once_and_a_large_one_is_not(change):
     assert 'opposite' in change.refusal(0.0, (0.0, 0.0, 9.81))
 
 
-def test_several_calls_turn_it_no_further_than_one():
+def test_several_calls_turn_gravity_no_further_than_one():
     # 84, 12 and 84 degrees: each below 90, together upside down.
     unit = GravityChange()
     unit.begin(0.0, DOWN)
@@ -57,17 +57,17 @@ def test_no_sequence_turns_faster_than_the_rate(steps):
             assert abs(after - before) <= 60.0 + 30.0 * (later - time) + 1e-6
 
 
-def test_a_base_that_tilts_slowly_is_followed_for_ever(change):
+def test_a_slowly_tilting_base_is_always_followed(change):
     for i in range(1, 2000):
         gravity = turned(25.0 * i * 0.01)
         assert change.refusal(0.01 * i, gravity) == '', i
         change.accept(0.01 * i, gravity)
 
 
-def test_its_size_is_limited_too(change):
+def test_the_magnitude_is_limited(change):
     assert change.refusal(0.0, turned(0.0, 11.0)) == ''
     assert 'size that changes by at most 2 m/s^2' in change.refusal(0.0, turned(0.0, 20.0))
 
 
-def test_zero_has_no_direction(change):
+def test_zero_gravity_is_refused(change):
     assert 'not zero while output is on' in change.refusal(0.0, (0.0, 0.0, 0.0))

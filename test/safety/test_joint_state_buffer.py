@@ -1,4 +1,4 @@
-"""The buffer: any order, parts, extras; and what it drops."""
+"""The buffer: any order, partial messages, other joints, and dropped messages."""
 
 import contextlib
 import math
@@ -48,14 +48,14 @@ def test_every_needed_joint_must_be_fresh():
     assert unit.stale_joints(2.0, 0.5, [1, 2]) == ['c']
 
 
-def test_a_joint_never_measured_stands_at_its_neutral_position():
+def test_the_position_before_the_first_measurement_is_neutral():
     unit = buffer()
     unit.update(0.0, ['b'], [5.0])
     np.testing.assert_array_equal(unit.position, [0.1, 5.0, 0.3])
     assert np.isnan(unit.velocity).all()
 
 
-def test_an_infinite_velocity_is_not_known():
+def test_an_infinite_velocity_is_unknown():
     unit = buffer()
     unit.update(0.0, NAMES, [1, 2, 3], [math.inf, -math.inf, 4.0])
     np.testing.assert_array_equal(unit.velocity, [math.nan, math.nan, 4.0])
@@ -85,7 +85,7 @@ def test_a_bad_message_is_dropped_whole_and_counted(names, position, velocity, k
     np.testing.assert_array_equal(unit.velocity, [4, 5, 6])
 
 
-def test_names_in_the_message_are_short_and_harmless_to_a_terminal():
+def test_names_in_the_message_are_short_and_printable():
     name = '\x1b]0;title\x07\n' + 'x' * 10_000
     with pytest.raises(RejectedStateError) as caught:
         buffer().update(0.0, [name, name], [1.0, 2.0])
@@ -93,7 +93,7 @@ def test_names_in_the_message_are_short_and_harmless_to_a_terminal():
     assert str(caught.value).isprintable()
 
 
-def test_a_bad_message_does_not_spoil_the_next_one():
+def test_a_bad_message_does_not_affect_the_next_one():
     unit = buffer()
     unit.update(0.0, ['a', 'b', 'c'], [1, 2, 3])
     for _ in range(2):
@@ -104,13 +104,13 @@ def test_a_bad_message_does_not_spoil_the_next_one():
     np.testing.assert_array_equal(unit.position, [1, 2, 3])
 
 
-def test_what_is_handed_out_is_a_copy():
+def test_returned_arrays_are_copies():
     unit = buffer()
     unit.position[:] = 99
     np.testing.assert_array_equal(unit.position, [0.1, 0.2, 0.3])
 
 
-def test_nan_of_a_joint_that_is_not_needed_is_passed_over():
+def test_nan_of_an_unneeded_joint_is_ignored():
     unit = buffer(needed=('a',))
     unit.update(0.0, ['b', 'a'], [math.nan, 1.0], [5.0, 6.0])
     np.testing.assert_array_equal(unit.position, [1.0, 0.2, 0.3])
@@ -119,7 +119,7 @@ def test_nan_of_a_joint_that_is_not_needed_is_passed_over():
 
 
 def moving(needed=NAMES):
-    """Return a buffer of joints that make 1 rad/s, where a state may be 0.1 s old."""
+    """Return a buffer of joints with 1 rad/s and a state timeout of 0.1 s."""
     return JointStateBuffer(
         NAMES,
         needed,
@@ -130,7 +130,7 @@ def moving(needed=NAMES):
 
 
 def stamped(unit, time, names=NAMES, position=(0.0, 0.0, 0.0), late=0.0):
-    """Give a buffer a message that arrives `late` seconds after its stamp."""
+    """Send a buffer a message that arrives `late` seconds after its stamp."""
     unit.update(
         time,
         list(names),
@@ -147,7 +147,7 @@ def test_a_stamp_far_from_the_clock_makes_nothing_fresh(late, kind):
     stamped(unit, 0.0)
     if kind is None:
         stamped(unit, 1.0, late=late)
-        assert unit.age(1.0) == pytest.approx(0.09)  # it is as old as its stamp
+        assert unit.age(1.0) == pytest.approx(0.09)  # the age counts from the stamp
         return
     with pytest.raises(RejectedStateError, match='synchronize the clocks'):
         stamped(unit, 1.0, late=late)
@@ -176,7 +176,7 @@ def test_the_order_of_stamps_holds_for_each_joint_by_itself():
     assert unit.is_complete
 
 
-def test_stamps_from_before_the_clock_was_set_back_do_not_shut_the_door():
+def test_stamps_from_before_a_clock_reset_do_not_block_new_ones():
     unit = moving()
     stamped(unit, 50.0)
     unit.update(50.1, list(NAMES), [0.0, 0.0, 0.0], (), 7 * SECOND, 7 * SECOND)
@@ -214,7 +214,7 @@ def test_the_time_of_a_step_is_that_between_the_stamps():
     assert unit.rejected == {}
 
 
-def test_several_impossible_steps_in_a_row_are_a_fault_and_then_the_new_truth():
+def test_several_impossible_steps_in_a_row_are_a_fault_and_then_accepted():
     unit = moving()
     stamped(unit, 0.0)
     there = (2.0, 0.0, 0.0)
@@ -231,7 +231,7 @@ def test_several_impossible_steps_in_a_row_are_a_fault_and_then_the_new_truth():
     assert unit.is_complete
 
 
-def test_good_steps_in_between_begin_the_count_anew():
+def test_good_steps_restart_the_count():
     unit = moving()
     stamped(unit, 0.0)
     for i in range(10):
@@ -241,7 +241,7 @@ def test_good_steps_in_between_begin_the_count_anew():
         stamped(unit, 0.02 * i + 0.02)
 
 
-def test_states_of_other_joints_do_not_begin_the_count_anew():
+def test_states_of_other_joints_do_not_restart_the_count():
     # An arm and its gripper have a broadcaster each.
     unit = moving()
     stamped(unit, 0.0)
@@ -252,7 +252,7 @@ def test_states_of_other_joints_do_not_begin_the_count_anew():
     assert caught.value.is_fault
 
 
-def test_after_silence_any_position_is_believed():
+def test_any_position_is_accepted_after_a_silence():
     unit = moving()
     stamped(unit, 0.0)
     stamped(unit, 0.11, position=(3.0, -3.0, 3.0))
@@ -266,7 +266,7 @@ def test_joints_that_are_not_needed_may_jump():
     assert unit.position[1] == 2.0
 
 
-def test_forgetting_asks_for_every_joint_again_and_is_no_sign_of_life():
+def test_forget_requires_new_measurements_and_is_none():
     unit = moving()
     stamped(unit, 0.0)
     unit.forget()
@@ -282,7 +282,7 @@ def test_forgetting_asks_for_every_joint_again_and_is_no_sign_of_life():
     assert unit.age(0.9) == pytest.approx(0.1)
 
 
-def test_what_is_said_of_the_motion_is_of_the_needed_joints():
+def test_runaway_and_outside_cover_the_needed_joints():
     unit = moving(needed=('a', 'b'))
     unit.update(0.0, list(NAMES), [0.0, 5.0, 5.0], [2.5, 0.0, 9.0])
     assert unit.runaway() == 'a at 2.5 (limit 1)'
@@ -292,7 +292,7 @@ def test_what_is_said_of_the_motion_is_of_the_needed_joints():
 # Efforts -------------------------------------------------------------------------------------
 
 
-def test_efforts_come_by_name_like_everything_else():
+def test_efforts_are_merged_by_name():
     unit = buffer()
     assert np.isnan(unit.effort).all()
     unit.update(0.0, ['c', 'x', 'a'], [3.0, 9.0, 1.0], efforts=[-3.0, -9.0, -1.0])
@@ -304,7 +304,7 @@ def test_efforts_come_by_name_like_everything_else():
 @pytest.mark.parametrize(
     'efforts', [[], [1.0], [1.0] * 4, [math.nan] * 3, [math.inf, -math.inf, math.nan]], ids=str
 )
-def test_wrong_efforts_are_unknown_and_spoil_no_state(efforts):
+def test_wrong_efforts_are_unknown_and_drop_no_state(efforts):
     unit = buffer()
     unit.update(0.0, NAMES, [0, 0, 0], [0, 0, 0], efforts=[1.0, 2.0, 3.0])
     unit.update(0.1, NAMES, [1, 2, 3], [4, 5, 6], efforts=efforts)
@@ -319,7 +319,7 @@ def test_wrong_efforts_are_unknown_and_spoil_no_state(efforts):
     st.permutations(['a', 'b', 'c', 'x']),
     st.lists(st.floats(), min_size=4, max_size=4),
 )
-def test_whatever_the_efforts_are_the_state_is_the_same(efforts, names, positions):
+def test_efforts_do_not_change_the_rest_of_the_state(efforts, names, positions):
     units = [buffer(needed=('a', 'b')), buffer(needed=('a', 'b'))]
     for unit, given_efforts in zip(units, ((), efforts), strict=True):
         with contextlib.suppress(RejectedStateError):
@@ -332,13 +332,13 @@ def test_whatever_the_efforts_are_the_state_is_the_same(efforts, names, position
     assert with_none.position.tobytes() == with_some.position.tobytes()
 
 
-def test_one_effort_that_is_not_known_leaves_the_others():
+def test_one_unknown_effort_leaves_the_others():
     unit = buffer()
     unit.update(0.0, NAMES, [0, 0, 0], efforts=[1.0, math.nan, 3.0])
     np.testing.assert_array_equal(unit.effort, [1.0, math.nan, 3.0])
 
 
-def test_a_state_that_is_dropped_brings_no_efforts():
+def test_a_dropped_state_changes_no_efforts():
     unit = buffer()
     unit.update(0.0, NAMES, [0, 0, 0], efforts=[1.0, 2.0, 3.0])
     with pytest.raises(RejectedStateError):
@@ -346,7 +346,7 @@ def test_a_state_that_is_dropped_brings_no_efforts():
     np.testing.assert_array_equal(unit.effort, [1.0, 2.0, 3.0])
 
 
-def test_forgetting_is_counted_and_takes_the_efforts():
+def test_forget_is_counted_and_removes_the_efforts():
     unit = buffer()
     unit.update(0.0, NAMES, [0, 0, 0], efforts=[1.0, 2.0, 3.0])
     assert unit.breaks == 0
@@ -355,7 +355,7 @@ def test_forgetting_is_counted_and_takes_the_efforts():
     assert np.isnan(unit.effort).all()
 
 
-def test_a_state_was_measured_when_its_oldest_needed_part_was():
+def test_measured_is_the_stamp_of_the_oldest_needed_joint():
     unit = moving(needed=('a', 'b'))
     assert unit.measured == 0
     stamped(unit, 0.01, 'ac', (0.0, 0.0))
@@ -364,7 +364,7 @@ def test_a_state_was_measured_when_its_oldest_needed_part_was():
     assert unit.measured == round(100.01 * SECOND)
     stamped(unit, 0.03, 'ac', (0.0, 0.0))
     assert unit.measured == round(100.02 * SECOND)
-    # Without a stamp nobody says when.
+    # Without a stamp the time of the measurement is unknown.
     unit.update(0.04, ['a'], [0.0])
     assert unit.measured == 0
 
@@ -373,7 +373,7 @@ NOW = 1_700_000_000 * SECOND
 
 
 @pytest.mark.parametrize('late', [0, 0.05, 0.3, -0.05, -0.3])
-def test_a_stamp_as_far_as_a_state_may_be_old_passes(late):
+def test_a_stamp_within_the_state_timeout_passes(late):
     StampTolerance(0.3).check(NOW - round(late * SECOND), NOW)
 
 
@@ -386,18 +386,18 @@ def test_a_stamp_as_far_as_a_state_may_be_old_passes(late):
         (NOW / SECOND, 'set use_sim_time on both sides or on neither'),
     ],
 )
-def test_a_stamp_further_away_is_refused_in_words(late, text):
+def test_a_stamp_beyond_it_is_refused_with_the_difference(late, text):
     with pytest.raises(RejectedStateError, match=text) as caught:
         StampTolerance(0.3).check(NOW - round(late * SECOND), NOW)
     assert caught.value.kind == 'stamp'
     assert not caught.value.is_fault
 
 
-def test_a_very_short_timeout_leaves_room_for_clocks_that_are_synchronized():
+def test_a_short_timeout_leaves_room_for_synchronized_clocks():
     StampTolerance(0.005).check(NOW - SECOND // 11, NOW)
 
 
-def test_a_stamp_far_ahead_of_the_clock_was_given_before_the_clock_was_set_back():
+def test_a_stamp_far_ahead_of_the_clock_is_from_before_a_reset():
     tolerance = StampTolerance(0.1)
     assert tolerance.is_ahead(NOW + SECOND, NOW)
     assert not tolerance.is_ahead(NOW + SECOND // 20, NOW)

@@ -1,4 +1,4 @@
-"""How far and how fast joints can have moved; worked out by hand."""
+"""Impossible steps, runaway and positions outside, with values computed by hand."""
 
 import math
 
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-# A hinge of 3 rad/s, a wheel of 3 rad/s, a joint of which nothing is known.
+# A hinge of 3 rad/s, a wheel of 3 rad/s, a joint without limits.
 LIMITS = MotionLimits(
     ('hinge', 'wheel', 'unknown'),
     np.array([3.0, 3.0, math.nan]),
@@ -25,7 +25,7 @@ EVERY = (0, 1, 2)
         (0.59, 0.1, False),
         (0.61, 0.1, True),
         (-0.61, 0.1, True),
-        # Two messages on each other's heels: still the shortest step.
+        # Two messages at nearly the same time: still the shortest step.
         (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 0.99, 0.0, False),
         (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 1.01, 0.0, True),
         (JUMP_MARGIN * 3.0 * SHORTEST_STEP * 1.01, -5.0, True),
@@ -35,7 +35,7 @@ EVERY = (0, 1, 2)
 )
 def test_a_step_beyond_twice_the_velocity_limit_is_impossible(step, dt, is_impossible):
     for joint in (0, 1):
-        # 1e300 rad is some whole number of turns away from anything: only the hinge tells.
+        # 1e300 rad is a whole number of turns from every position: only the hinge detects it.
         if joint == 0 or abs(step) < 1e9:
             assert LIMITS.is_impossible(joint, 0.25, 0.25 + step, dt) == is_impossible
 
@@ -53,12 +53,12 @@ def test_whole_turns_of_a_wheel_are_no_step(turns, step):
     st.floats(allow_nan=False, allow_infinity=False),
     st.floats(-1, 1),
 )
-def test_no_two_numbers_make_it_raise(joint, before, after, dt):
+def test_is_impossible_never_raises(joint, before, after, dt):
     LIMITS.is_impossible(joint, before, after, dt)
     LIMITS.describe_jump(joint, before, after, dt)
 
 
-def test_of_a_joint_without_limits_everything_is_believed():
+def test_every_step_of_a_joint_without_limits_is_possible():
     assert not LIMITS.is_impossible(2, 0.0, 1e6, 0.0)
     assert LIMITS.runaway((2,), (0.0, 0.0, 1e6)) == ''
     everything = MotionLimits.none(('a',))
@@ -86,7 +86,7 @@ def test_the_allowed_velocity_decides_on_runaway_and_the_possible_one_on_jumps()
     slow, fast, free = limits(0.5), limits(10.0), limits(math.nan)
     assert slow.runaway((0,), (0.6,)) == 'hinge at 0.6 (limit 0.5)'
     assert fast.runaway((0,), (9.9,)) == free.runaway((0,), (1e9,)) == ''
-    assert not slow.is_impossible(0, 0.0, 0.59, 0.1)  # the joint can do that
+    assert not slow.is_impossible(0, 0.0, 0.59, 0.1)  # within the possible velocity
     assert slow.is_impossible(0, 0.0, 0.61, 0.1)
     assert not fast.is_impossible(0, 0.0, 1.9, 0.1)
     assert fast.is_impossible(0, 0.0, 2.1, 0.1)

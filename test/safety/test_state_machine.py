@@ -1,4 +1,4 @@
-"""The states of the output: what latches, what is told, and what the observer may not do."""
+"""The states of the output: latched faults, reported changes, failing observers."""
 
 from dynamics_interfaces.msg import OutputState as Message
 from dynamics_node.safety import OutputState, OutputStateMachine
@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 
 
 def machine():
-    """Return a machine and the list of what its observer hears."""
+    """Return a machine and the list of changes that its observer receives."""
     heard = []
     return OutputStateMachine(lambda state, reason: heard.append((state.name, reason))), heard
 
 
-def test_every_change_is_told_once_with_its_reason():
+def test_every_change_is_reported_once_with_its_reason():
     unit, heard = machine()
     unit.enter(OutputState.STARTING, 'enabled')
     unit.enter(OutputState.STARTING, 'enabled')
@@ -23,19 +23,19 @@ def test_every_change_is_told_once_with_its_reason():
     assert unit.name == 'ACTIVE'
 
 
-def test_the_first_fault_is_the_one_that_stays():
+def test_the_first_fault_is_latched():
     unit, heard = machine()
     unit.latch('first')
     unit.latch('second')
     unit.enter(OutputState.FAULT, unit.fault)
-    for i in range(1000):  # a storm of faults is one event
+    for i in range(1000):  # repeated faults are one event
         unit.enter(OutputState.FAULT, f'another {i}')
     assert heard == [('FAULT', 'first')]
     assert unit.fault == 'first'
     assert not unit.is_on
 
 
-def test_an_observer_that_fails_changes_nothing(caplog):
+def test_a_failing_observer_has_no_effect(caplog):
     def fail(state, reason):
         raise RuntimeError('publisher is gone')
 
@@ -46,7 +46,7 @@ def test_an_observer_that_fails_changes_nothing(caplog):
 
 
 @given(st.lists(st.sampled_from(list(OutputState)), max_size=20))
-def test_what_is_on_is_what_sends(states):
+def test_the_output_is_on_in_the_states_with_commands(states):
     unit, _ = machine()
     for state in states:
         unit.enter(state, 'test')

@@ -1,4 +1,4 @@
-"""From a message to a command, with every fault that can be dealt between them."""
+"""From a joint state to a command, with random faults in between."""
 
 import math
 
@@ -38,7 +38,7 @@ class Model:
 
 
 class Arm:
-    """A torque path with an arm of two joints, and a caller that publishes what it returns."""
+    """A torque path with an arm of two joints, and a caller that publishes its commands."""
 
     def __init__(self, behavior='ramp_to_zero', timeout=0.1, velocity=3.0, rates=RATES):
         self.path = TorquePath(
@@ -75,7 +75,7 @@ class Arm:
         return command
 
     def take(self, now, position, velocity=(), stamp=None, names=NAMES, clock=None, efforts=()):
-        """Take a message, stamped when it arrives unless told otherwise; return the command."""
+        """Process a message, stamped at its arrival by default; return the command."""
         clock = round((100 + now) * SECOND) if clock is None else clock
         stamp = clock if stamp is None else stamp
         return self.publish(
@@ -90,7 +90,7 @@ class Arm:
         return self.publish(now, self.path.tick(now))
 
     def run(self, now, seconds, position, period=0.01, **message):
-        """Take states and tick for some time; return the time."""
+        """Process states and tick for some time; return the time."""
         for _ in range(round(seconds / period)):
             now += period
             self.take(now, position, **message)
@@ -107,7 +107,7 @@ class Arm:
 
 
 def active(**options):
-    """Return an arm that is ACTIVE at t = 1, and the state it stands at."""
+    """Return an arm that is ACTIVE at t = 1, and its joint state."""
     arm, state = Arm(**options), [1.4, 0.2]
     arm.take(0.0, state)
     assert arm.path.enable(0.0)
@@ -127,7 +127,7 @@ def test_a_state_is_usable_when_every_joint_is_known_and_fresh():
     np.testing.assert_allclose(arm.path.gravity_torque, [30.0, 0.0])
 
 
-def test_a_state_that_was_long_on_its_way_is_as_old_as_its_stamp():
+def test_the_age_of_a_delayed_state_counts_from_its_stamp():
     arm = Arm(timeout=0.02)
     late = round((100 + 0.5 - 0.09) * SECOND)
     arm.take(0.5, [1.4, 0.2], stamp=late)
@@ -138,7 +138,7 @@ def test_a_state_that_was_long_on_its_way_is_as_old_as_its_stamp():
     assert arm.path.buffer.age(0.6) == 0.0
 
 
-def test_one_jump_is_passed_over_and_three_in_a_row_stop_the_arm():
+def test_one_jump_is_ignored_and_three_in_a_row_stop_the_arm():
     arm, (elbow, wrist) = active()
     with pytest.raises(RejectedStateError):
         arm.take(1.01, [0.0, wrist])
@@ -162,7 +162,7 @@ def test_an_arm_above_its_velocity_limits_stops_at_once():
     assert arm.fault == 'runaway: wrist at 3.1 (limit 3), above velocity_limits'
 
 
-def test_silence_stops_by_the_ramp_with_both_numbers():
+def test_stale_joint_states_stop_by_the_ramp_with_both_numbers():
     arm, _ = active()
     arm.tick(1.09)
     assert arm.name == 'ACTIVE'
@@ -171,7 +171,7 @@ def test_silence_stops_by_the_ramp_with_both_numbers():
     assert arm.name == 'STOPPING'
 
 
-def test_hold_is_for_silence_alone():
+def test_only_stale_joint_states_lead_to_hold():
     def stopped(cause):
         arm, state = active(behavior='hold')
         cause(arm, state)
@@ -185,7 +185,7 @@ def test_hold_is_for_silence_alone():
     assert stopped(lambda arm, _: arm.path.close(1.01, 'SIGTERM', 2.5)) == 'STOPPING'
 
 
-def test_saturation_is_not_held_either():
+def test_saturation_is_not_held():
     arm, state = active(behavior='hold')
     arm.configure(gain=10.0, now=1.0)
     arm.run(1.0, 4.0, state)
@@ -194,7 +194,7 @@ def test_saturation_is_not_held_either():
     np.testing.assert_array_equal(arm.sent[-1], [0.0, 0.0])
 
 
-def test_what_is_held_can_be_released_and_a_runaway_releases_it():
+def test_disable_and_a_runaway_release_the_held_efforts():
     arm, _ = active(behavior='hold')
     arm.tick(1.2)
     assert arm.name == 'HOLDING'
@@ -210,7 +210,7 @@ def test_what_is_held_can_be_released_and_a_runaway_releases_it():
     assert arm.name == 'STOPPING'
 
 
-def test_hold_goes_on_from_what_is_held_where_the_arm_reports_it_or_nothing():
+def test_enable_starts_from_the_held_efforts_unless_the_measured_ones_differ():
     for efforts, begins_at in ((), 5.0), ([5.0, 1.5], 5.0), ([0.01, 0.0], 0.0):
         arm, state = active(behavior='hold')
         held = arm.path.output.limiter.last
@@ -230,7 +230,7 @@ def test_a_process_that_stood_still_is_a_fault_although_the_newest_state_is_fres
     assert command is None
 
 
-def test_a_command_that_was_held_up_is_not_sent():
+def test_a_delayed_command_is_not_sent():
     arm, _state = active()
     sent = arm.path.output.limiter.last
     command = arm.path.process_joint_state(
@@ -239,7 +239,7 @@ def test_a_command_that_was_held_up_is_not_sent():
     assert command is not None
     assert arm.path.is_timely(1.02)
     assert not arm.path.is_timely(2.0)
-    np.testing.assert_array_equal(arm.path.output.limiter.last, sent)  # what the arm really has
+    np.testing.assert_array_equal(arm.path.output.limiter.last, sent)  # the command in force
     assert arm.name == 'STOPPING'
 
 
@@ -290,7 +290,7 @@ def test_the_same_parameters_again_change_nothing():
         arm.tick(1.01 + 0.01 * i)
 
 
-def test_nothing_starts_any_more_when_the_process_ends():
+def test_the_output_cannot_start_after_close():
     arm, state = active()
     arm.path.close(1.01, 'SIGTERM', 2.5)
     now = arm.run(1.01, 1.2, state)
@@ -299,7 +299,7 @@ def test_nothing_starts_any_more_when_the_process_ends():
     assert arm.name == 'READY'
 
 
-def test_a_second_call_to_end_hastens_the_stop():
+def test_a_second_close_shortens_the_stop():
     arm, state = active()
     arm.path.close(1.0, 'SIGINT', 2.5)
     now = arm.run(1.0, 0.2, state)
@@ -308,7 +308,7 @@ def test_a_second_call_to_end_hastens_the_stop():
     assert arm.name == 'READY'
 
 
-def test_a_controller_that_was_deactivated_ends_it_and_the_next_start_begins_there():
+def test_a_deactivated_controller_ends_the_output_and_the_next_start_begins_there():
     arm, state = active()
     last = arm.sent[-1]
     arm.path.lose_controller(1.01, '/effort_controller is inactive')
@@ -320,7 +320,7 @@ def test_a_controller_that_was_deactivated_ends_it_and_the_next_start_begins_the
     assert arm.run(1.01, 0.5, state, efforts=last) and arm.sent[-1] is last
     assert arm.path.enable(1.6)
     np.testing.assert_allclose(arm.take(1.61, state, efforts=last), last)
-    # One that sets the hardware to zero: then the ramp begins at zero.
+    # A controller that sets the hardware to zero: the ramp begins at zero.
     arm, state = active()
     arm.path.lose_controller(1.01, '/effort_controller is inactive')
     arm.run(1.01, 0.5, state, efforts=[0.0, 0.0])
@@ -328,7 +328,7 @@ def test_a_controller_that_was_deactivated_ends_it_and_the_next_start_begins_the
     assert np.abs(arm.take(1.61, state)).max() < 0.2
 
 
-def test_a_controller_that_vanishes_during_the_stop_of_a_fault_is_named_behind_it():
+def test_a_controller_lost_during_the_stop_of_a_fault_is_named_after_the_fault():
     arm, _ = active()
     arm.path.fault(1.01, '2 publishers')
     arm.path.lose_controller(1.02, '/effort_controller no longer listens')
@@ -339,7 +339,7 @@ def test_a_controller_that_vanishes_during_the_stop_of_a_fault_is_named_behind_i
     )
 
 
-def test_a_controller_that_begins_to_listen_gets_the_ramp():
+def test_restart_from_zero_ramps_for_a_new_controller():
     arm, state = active()
     arm.path.restart_from_zero(1.01, 'a controller has begun to listen')
     assert arm.name == 'STARTING'
@@ -349,7 +349,7 @@ def test_a_controller_that_begins_to_listen_gets_the_ramp():
 def test_a_clock_that_goes_back_drops_the_state_and_ramps_again():
     arm, (elbow, wrist) = active()
     last = arm.path.output.limiter.last
-    # A simulation begins anew: the arm stands elsewhere, and no jump is seen in that.
+    # A simulation restarts with the arm elsewhere: this is no jump.
     command = arm.take(1.01, [-elbow, -wrist], clock=3 * SECOND)
     assert arm.name == 'STARTING'
     assert 'the clock went back by 98.000 s' in arm.path.output.machine.reason
@@ -361,7 +361,7 @@ def test_a_clock_that_goes_back_drops_the_state_and_ramps_again():
     np.testing.assert_allclose(command, [30.0 * math.cos(elbow), -8.0 * wrist])
 
 
-def test_a_clock_that_goes_back_again_and_again_is_no_sign_of_life():
+def test_repeated_clock_resets_are_no_fresh_measurement():
     arm, (elbow, _) = active()
     for i in range(1, 20):
         clock = (50 - i) * SECOND if i <= 3 else 47 * SECOND + i * SECOND // 100
@@ -382,7 +382,7 @@ def test_while_the_simulation_pauses_the_steady_clock_goes_on():
     assert arm.fault.startswith('joint_states stale: last 0.1')
 
 
-def test_two_clocks_at_once_do_not_freeze_the_effort():
+def test_two_alternating_clocks_do_not_freeze_the_effort():
     arm, (elbow, wrist) = active()
     for i in range(1, 40):
         arm.take(1.0 + 0.01 * i, [elbow, wrist], clock=(50 - i % 2) * SECOND)
@@ -413,7 +413,7 @@ MESSAGES = st.tuples(
     st.lists(st.sampled_from([*NAMES, 'other']), max_size=4),
     st.lists(number, max_size=4),
     st.lists(number, max_size=4),
-    # The stamp: none, in time, late, ahead, from anywhere.
+    # The stamp: none, in time, late, ahead, random.
     st.one_of(st.none(), st.floats(-0.3, 0.3), st.integers(-(2**31), 2**31)),
 )
 CALLS = ('enable', 'disable', 'fault', 'error', 'signal', 'lost', 'late controller', 'tick')
@@ -428,14 +428,14 @@ EVENTS = st.one_of(
 
 
 def stamp_of(choice, clock):
-    """Return the stamp that a message with this choice has, ns."""
+    """Return the stamp for a choice, ns."""
     if choice is None:
         return 0
     return clock - round(choice * SECOND) if isinstance(choice, float) else choice * SECOND
 
 
 def call(path, event, now):
-    """Stop, or start anew, by one of the calls that do."""
+    """Stop or restart by one of the calls for it."""
     if event == 'signal':
         path.close(now, event, 2.5)
     else:
@@ -462,7 +462,7 @@ SWING = [
     st.sampled_from(BEHAVIORS),
     st.lists(st.tuples(st.one_of(st.just(0.01), st.floats(0, 0.5)), EVENTS), max_size=80),
 )
-def test_whatever_comes_no_command_is_wrong_and_none_comes_while_off(behavior, events):
+def test_any_sequence_of_events_gives_valid_commands_and_none_while_off(behavior, events):
     arm = Arm(behavior)
     path = arm.path
     now, offset = 0.0, 1000.0
@@ -491,14 +491,14 @@ def test_whatever_comes_no_command_is_wrong_and_none_comes_while_off(behavior, e
         else:
             call(path, event, now)
         if event in ('late controller', 'enable') and path.is_driving:
-            last = path.output.limiter.last  # what is in force is known anew
+            last = path.output.limiter.last  # the efforts in force may have changed
         if command is None:
             continue
         assert was_on
         assert command.shape == (2,)
         assert np.isfinite(command).all()
         assert (np.abs(command) <= np.maximum(LIMITS, np.abs(last))).all()
-        # One step counts at most ten milliseconds; of a stop, at most a twentieth of a second.
+        # The time of one step is at most 10 ms, that of a stop at most 50 ms.
         dt = min(now - last_time, STOP_PERIOD)
         allowed = RATES * dt
         if was_stopping or arm.name == 'STOPPING':

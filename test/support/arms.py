@@ -1,4 +1,4 @@
-"""Arms to report on: sound ones, and what is changed in them."""
+"""Arms for the report: correct ones, and changes of them."""
 
 import math
 from xml.etree import ElementTree
@@ -70,10 +70,10 @@ def changed(
     kind=None,
 ):
     """
-    Return URDF text with something else in a link or joint.
+    Return URDF text with a changed link or joint.
 
-    inertial, shape, axis False: without it. tensor: dict of entries, or one number for the
-    diagonal. limit: dict of attributes, None for one that is taken away.
+    inertial, shape, axis: False removes it. tensor: dict of entries, or one number for the
+    diagonal. limit: dict of attributes; None removes one.
 
     """
     robot = ElementTree.fromstring(text)

@@ -1,8 +1,8 @@
 """
-A real browser without a window: Chromium, told what to do over a pipe.
+A browser without a window, driven by Selenium: Chromium with its chromedriver.
 
-It is the judge of the pages that the package writes: what is drawn, what runs, what is asked of
-the network. DYNAMICS_NODE_BROWSER names one; otherwise it is looked for on the PATH.
+It judges the pages that the package writes: what is drawn, what runs, what is requested from the
+network. DYNAMICS_NODE_BROWSER names a browser; otherwise the PATH is searched.
 
 """
 
@@ -10,21 +10,18 @@ import base64
 import contextlib
 import json
 import os
-import select
 import shutil
-import subprocess
-import tempfile
 import time
 
 import pytest
 
 NAMES = ('chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable')
-PATIENCE = 120.0  # [s] for one answer; three dimensions without a graphics card take their time
+# Longest wait for one answer, s; 3D without a graphics card is slow.
+PATIENCE = 120.0
 
-# No service of the browser's maker, no name is ever resolved; 3D by the processor.
+# No services of the browser's vendor, no name resolution.
 _OPTIONS = (
-    '--headless',
-    '--remote-debugging-pipe',
+    '--headless=new',
     '--no-first-run',
     '--disable-sync',
     '--disable-background-networking',
@@ -49,70 +46,62 @@ def find_browser():
 
 def require_browser():
     """
-    Return the path of a browser; without one the test is skipped.
+    Return the paths of a browser and of chromedriver; without them the test is skipped.
 
     With DYNAMICS_NODE_BROWSER_REQUIRED=1, as .ci/run sets it, the test fails.
 
     """
-    path = find_browser()
-    if path is None:
-        chosen = os.environ.get('DYNAMICS_NODE_BROWSER')
-        if chosen:
-            pytest.fail(
-                f'DYNAMICS_NODE_BROWSER: expected a browser, got {chosen!r}, which is no program'
-            )
-        said = (
-            'no browser found: install chromium (apt-get install chromium), or set '
-            'DYNAMICS_NODE_BROWSER to one'
+    path, driver = find_browser(), shutil.which('chromedriver')
+    chosen = os.environ.get('DYNAMICS_NODE_BROWSER')
+    if chosen and path is None:
+        pytest.fail(
+            f'DYNAMICS_NODE_BROWSER: expected a browser, got {chosen!r}, which is no program'
+        )
+    if path is None or driver is None:
+        missing = 'browser' if path is None else 'chromedriver'
+        message = (
+            f'no {missing} found: install Chromium and its driver '
+            '(apt-get install chromium chromium-driver)'
         )
         if os.environ.get('DYNAMICS_NODE_BROWSER_REQUIRED', '') not in ('', '0'):
-            pytest.fail(said)
-        pytest.skip(said)
-    return path
+            pytest.fail(message)
+        pytest.skip(message)
+    return path, driver
 
 
 @contextlib.contextmanager
 def browser(has_3d=True):
-    """Yield a `Tab` of a new browser, which is closed in the end."""
-    path = require_browser()
-    read_answers, write_answers = os.pipe()
-    read_orders, write_orders = os.pipe()
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        options = [*_OPTIONS, *(_SOFTWARE_3D if has_3d else _NO_3D), f'--user-data-dir={profile}']
-        if os.geteuid() == 0:
-            options.append('--no-sandbox')  # it refuses to be started by root otherwise
-        # The browser reads orders from 3 and writes answers to 4.
-        process = subprocess.Popen(
-            ['bash', '-c', f'exec "$0" "$@" 3<&{read_orders} 4>&{write_answers}', path, *options],
-            pass_fds=(read_orders, write_answers),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        )
-        os.close(read_orders)
-        os.close(write_answers)
+    """Yield a `Tab` of a new browser, which is closed at the end."""
+    from selenium import webdriver
+
+    path, driver_path = require_browser()
+    options = webdriver.ChromeOptions()
+    options.binary_location = path
+    for option in (*_OPTIONS, *(_SOFTWARE_3D if has_3d else _NO_3D)):
+        options.add_argument(option)
+    if os.geteuid() == 0:
+        options.add_argument('--no-sandbox')  # Chromium refuses to run as root otherwise
+    options.set_capability('goog:loggingPrefs', {'performance': 'ALL', 'browser': 'ALL'})
+    with pytest.MonkeyPatch.context() as environment:
+        # Selenium talks to the driver over a local port, not by way of the user's proxy.
+        environment.setenv('no_proxy', 'localhost')
+        # With the path of the driver Selenium does not search or download one.
+        driver = webdriver.Chrome(options, webdriver.ChromeService(driver_path))
         try:
-            tab = Tab(write_orders, read_answers)
-            yield tab
-            tab.order('Browser.close', session=False)
-            process.wait(timeout=PATIENCE)
+            driver.set_page_load_timeout(PATIENCE)
+            yield Tab(driver)
         finally:
-            if process.poll() is None:
-                process.kill()
-                process.wait()
-            os.close(write_orders)
-            os.close(read_answers)
+            driver.quit()
 
 
 class Tab:
     """
-    One page, and what came of it.
+    One page with its requests and errors.
 
     Attributes
     ----------
     requests : list of str
-        Addresses that the page asked for since `open`, with its own, also in vain.
+        Addresses that the page requested since `open`, with its own, successful or not.
     blocked : list of str
         Those of them that the page's own policy forbade.
     complaints : list of str
@@ -120,18 +109,24 @@ class Tab:
 
     """
 
-    def __init__(self, orders, answers):
-        self._orders, self._answers = orders, answers
-        self._rest, self._number, self._session = b'', 0, None
-        self._results, self._loaded = {}, False
-        self.requests, self.blocked, self.complaints = [], [], []
-        self._addresses = {}
-        target = self.order('Target.createTarget', session=False, url='about:blank')['targetId']
-        self._session = self.order(
-            'Target.attachToTarget', session=False, targetId=target, flatten=True
-        )['sessionId']
-        for domain in ('Page', 'Runtime', 'Log', 'Network'):
-            self.order(f'{domain}.enable')
+    def __init__(self, driver):
+        self._driver = driver
+        self._addresses, self._requests, self._blocked, self._complaints = {}, [], [], []
+
+    @property
+    def requests(self):
+        self._read_logs()
+        return list(self._requests)
+
+    @property
+    def blocked(self):
+        self._read_logs()
+        return list(self._blocked)
+
+    @property
+    def complaints(self):
+        self._read_logs()
+        return list(self._complaints)
 
     def show(self, path):
         """Open a file unless it is open already."""
@@ -141,20 +136,17 @@ class Tab:
     def open(self, path, width=1280, height=900, scheme='light', scripts=True):
         """Open a file, and wait until it is loaded."""
         self.resize(width, height)
-        self.order('Emulation.setScriptExecutionDisabled', value=not scripts)
+        self._order('Emulation.setScriptExecutionDisabled', value=not scripts)
         self.scheme(scheme)
-        self.requests.clear()
-        self.blocked.clear()
-        self.complaints.clear()
-        self._loaded = False
-        self.order('Page.navigate', url=path.as_uri())
-        deadline = time.monotonic() + PATIENCE
-        while not self._loaded:
-            self._receive(deadline)
+        self._read_logs()
+        self._requests.clear()
+        self._blocked.clear()
+        self._complaints.clear()
+        self._driver.get(path.as_uri())
 
     def resize(self, width, height=900):
         """Give the window another size, in pixels."""
-        self.order(
+        self._order(
             'Emulation.setDeviceMetricsOverride',
             width=width,
             height=height,
@@ -163,15 +155,16 @@ class Tab:
         )
 
     def scheme(self, name):
-        """Let the system ask for 'light' or 'dark'."""
-        self.order(
+        """Emulate a system with the color scheme 'light' or 'dark'."""
+        self._order(
             'Emulation.setEmulatedMedia',
             features=[{'name': 'prefers-color-scheme', 'value': name}],
         )
 
     def evaluate(self, expression):
-        """Return what a JavaScript expression gives, a promise's value too."""
-        answer = self.order(
+        """Return the value of a JavaScript expression, or of its promise."""
+        # Unlike Selenium's execute_script this works in pages whose scripts are disabled.
+        answer = self._order(
             'Runtime.evaluate', expression=expression, returnByValue=True, awaitPromise=True
         )
         assert 'exceptionDetails' not in answer, answer['exceptionDetails']
@@ -185,61 +178,35 @@ class Tab:
             time.sleep(0.02)
 
     def settle(self):
-        """Wait until everything that was asked for is drawn."""
+        """Wait until everything is drawn."""
         self.evaluate(
             'new Promise((done) => requestAnimationFrame(() => '
             'requestAnimationFrame(() => setTimeout(done, 50))))'
         )
 
     def screenshot(self, path):
-        """Write what is seen now as PNG."""
-        data = self.order('Page.captureScreenshot', format='png')['data']
+        """Write the visible part of the page as PNG."""
+        data = self._order('Page.captureScreenshot', format='png')['data']
         path.write_bytes(base64.b64decode(data))
 
-    def order(self, method, session=True, **parameters):
-        """Return the answer to an order of the DevTools protocol."""
-        self._number += 1
-        message = {'id': self._number, 'method': method, 'params': parameters}
-        if session:
-            message['sessionId'] = self._session
-        os.write(self._orders, json.dumps(message).encode() + b'\0')
-        deadline = time.monotonic() + PATIENCE
-        while self._number not in self._results:
-            self._receive(deadline)
-        answer = self._results.pop(self._number)
-        assert 'error' not in answer, f'{method}: {answer["error"]}'
-        return answer['result']
+    def _order(self, method, **parameters):
+        return self._driver.execute_cdp_cmd(method, parameters)
 
-    def _receive(self, deadline):
-        left = deadline - time.monotonic()
-        assert left > 0.0 and select.select([self._answers], [], [], left)[0], (
-            f'the browser did not answer within {PATIENCE:.0f} s'
-        )
-        data = os.read(self._answers, 1 << 20)
-        assert data, 'the browser has ended'
-        *messages, self._rest = (self._rest + data).split(b'\0')
-        for message in map(json.loads, messages):
-            if 'id' in message:
-                self._results[message['id']] = message
-            else:
-                self._note(message['method'], message['params'])
+    def _read_logs(self):
+        for entry in self._driver.get_log('performance'):
+            event = json.loads(entry['message'])['message']
+            self._note(event['method'], event['params'])
+        self._complaints += [
+            entry['message']
+            for entry in self._driver.get_log('browser')
+            if entry['level'] == 'SEVERE'
+            or (entry['level'], entry['source']) == ('WARNING', 'console-api')
+        ]
 
     def _note(self, event, parameters):
-        if event == 'Page.loadEventFired':
-            self._loaded = True
-        elif event == 'Network.requestWillBeSent':
+        if event == 'Network.requestWillBeSent':
             address = parameters['request']['url']
-            self.requests.append(address)
+            self._requests.append(address)
             self._addresses[parameters['requestId']] = address
         elif event == 'Network.loadingFailed' and parameters.get('blockedReason') == 'csp':
-            self.blocked.append(self._addresses[parameters['requestId']])
-        elif event == 'Runtime.exceptionThrown':
-            self.complaints.append(json.dumps(parameters['exceptionDetails']))
-        elif event == 'Runtime.consoleAPICalled' and parameters['type'] in (
-            'error',
-            'warning',
-            'assert',
-        ):
-            self.complaints.append(json.dumps(parameters['args']))
-        elif event == 'Log.entryAdded' and parameters['entry']['level'] == 'error':
-            self.complaints.append(json.dumps(parameters['entry']))
+            self._blocked.append(self._addresses[parameters['requestId']])

@@ -1,18 +1,17 @@
-"""When two computations of D, C and G agree: element by element, up to rounding."""
+"""Comparison of D, C, G and accelerations, element by element, up to rounding."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-# Where a sum cancels, an element can be arbitrarily smaller than its summands, and then its
-# relative error says nothing; such an element is held to this part of the natural scale of
-# its place instead (see `natural_scales`).
+# Tolerance relative to the natural scale (see `natural_scales`), for elements much smaller than
+# their summands: their relative error is meaningless.
 ROUNDING = 1e-12
 
 
 def natural_scales(model, D, qd):
     """
-    Return what the elements of D, C and G are summed from, by Cauchy and Schwarz.
+    Return bounds of the summands of the elements of D, C and G, by Cauchy and Schwarz.
 
     |D_ij| <= sqrt(D_ii D_jj), and |G_i| <= |g| sqrt(m D_ii) with the moving mass m; C is of
     the size of D times a speed.
@@ -28,7 +27,7 @@ def natural_scales(model, D, qd):
 
 
 def assert_terms_agree(model, qd, actual, expected, relative):
-    """Hold every element of D, C and G to `relative` of itself, or to rounding of its scale."""
+    """Assert D, C and G up to `relative` of each element, or up to rounding of its scale."""
     scales = natural_scales(model, expected[0], qd)
     for name, mine, theirs, scale in zip('DCG', actual, expected, scales, strict=True):
         error = np.abs(mine - theirs)
@@ -40,13 +39,12 @@ def assert_terms_agree(model, qd, actual, expected, relative):
         )
 
 
-# An element's error is taken relative to the element, or to this part of its natural scale
-# where the element is smaller than that because its sum cancels.
+# Errors are relative to the element, or to this share of its natural scale if that is larger.
 CANCELLED = 0.1
 
 
 class Scales(NamedTuple):
-    """The natural scale of every element of everything that is compared."""
+    """The natural scales of all compared elements."""
 
     D: np.ndarray
     C: np.ndarray
@@ -60,8 +58,8 @@ def all_scales(model, D, qd, qdd):
     Return the scales of D, C, G, of inverse and of forward dynamics.
 
     Efforts are the sums of D q̈, C q̇ and G. An acceleration is bounded, by Cauchy and Schwarz
-    in the norm that D makes, |q̈_i|² <= (D⁻¹)_ii q̈ᵀ D q̈. FD is None where D is singular: there
-    efforts cause no definite acceleration.
+    in the norm that D makes, |q̈_i|² <= (D⁻¹)_ii q̈ᵀ D q̈. FD is None for a singular D: the
+    acceleration is then undefined.
 
     """
     sizes = natural_scales(model, D, qd)
@@ -78,8 +76,8 @@ def relative_error(actual, expected, scale):
     """
     Return the largest relative error of the elements of an array.
 
-    Each element's error is divided by the element or by CANCELLED times its scale, whichever
-    is larger. What is equal has no error, also where both are zero; NaN stays NaN.
+    Each error is divided by the element or by CANCELLED times its scale, whichever is larger.
+    Equal elements have no error, even if both are zero; NaN stays NaN.
 
     """
     expected = np.asarray(expected)
@@ -94,8 +92,8 @@ def condition(D):
     """
     Return the condition number of D with its diagonal scaled to 1.
 
-    The scaling takes out the units and sizes of the joints, which a Cholesky solution does not
-    feel. Infinite where D is singular.
+    The scaling removes units and sizes of the joints, which do not affect a Cholesky solution.
+    Infinite for a singular D.
 
     """
     diagonal = np.diag(D)

@@ -1,4 +1,4 @@
-"""One state of one robot by every route: the library, Pinocchio, MuJoCo, 80-bit arithmetic."""
+"""One state of one robot by the library, Pinocchio, MuJoCo and 80-bit arithmetic."""
 
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ QUANTITIES = ('D', 'C', 'G', 'ID', 'FD', 'energy')
 
 
 class Answer(NamedTuple):
-    """What one route says about one state; FD is None where D is singular."""
+    """The results of one route for one state; FD is None for a singular D."""
 
     D: np.ndarray
     C: np.ndarray
@@ -28,7 +28,7 @@ class Answer(NamedTuple):
 
 class Comparison(NamedTuple):
     """
-    What was found at one state.
+    The errors at one state.
 
     `errors` maps a pair of routes to the relative errors by quantity: ('library', 'pinocchio'),
     ('library', 'mujoco'), and each of the three with 'exact', the 80-bit arithmetic. `plain`
@@ -43,10 +43,10 @@ class Comparison(NamedTuple):
 
 
 class Routes:
-    """A robot and its three judges, each with its own reading of the URDF."""
+    """A robot and its three references, each with its own reader of the URDF."""
 
     def __init__(self, text, model):
-        """Read URDF text three more times; `model` is the library's."""
+        """Read URDF text by all references; `model` is the library's."""
         self.model = model
         self.exact = ExtendedPrecision(text)
         self.judges = {'pinocchio': PinocchioOracle(text), 'mujoco': MujocoOracle(text)}
@@ -125,7 +125,7 @@ def _errors(actual, expected, scales, height):
         for name in ('D', 'C', 'G', 'ID')
     }
     if scales.FD is not None:
-        # The library must answer wherever D is not singular.
+        # The library has to answer unless D is singular.
         mine = np.nan if actual.FD is None else actual.FD
         errors['FD'] = relative_error(mine, expected.FD, scales.FD)
     errors['energy'] = max(

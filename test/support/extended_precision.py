@@ -1,10 +1,10 @@
 """
-A third route in 80-bit arithmetic, which says who is wrong where two others differ.
+A reference in 80-bit arithmetic, which decides where two others differ.
 
-It reads the URDF itself and writes out the sums of docs/mathematics.md, section 3, with the
-derivatives of the 4x4 transforms by the product rule along the chain. It shares no line with
-the library. Its rounding is 2000 times smaller than that of ordinary floating point numbers,
-and every body is kept in its own frame, so that no large moments are subtracted.
+It has its own URDF reader and computes the sums of docs/mathematics.md, section 3, with the
+derivatives of the 4x4 transforms by the product rule along the chain. It shares no code with the
+library. Its rounding is 2000 times smaller than that of double precision, and each body is kept
+in its own frame, so that no large moments are subtracted.
 
 """
 
@@ -23,7 +23,7 @@ class ExactTerms(NamedTuple):
     """
     D (n, n), C (n, n), G (n,), kinetic and potential energy, all in 80 bits.
 
-    `height` is what the potential energy is summed from: |g| times the sum of the masses, each
+    `height` bounds the summands of the potential energy: |g| times the sum of the masses, each
     times its distance from the origin of the base.
 
     """
@@ -127,7 +127,7 @@ def solve(matrix, right):
 
 
 class _Joint:
-    """A movable joint: the body that it hangs from, and where and how it moves there."""
+    """A movable joint: its parent body, placement and axis."""
 
     def __init__(self, element, parent, placement):
         self.name = element.get('name')
@@ -150,7 +150,7 @@ class _Joint:
 
 
 def _walk(robot):
-    # The movable joints, parents first, and where every link is: (body, placement in it).
+    # The movable joints, parents first, and (body, placement in it) of each link.
     joints = robot.findall('joint')
     children = {joint.find('child').get('link') for joint in joints}
     links = {
@@ -214,5 +214,5 @@ def _placement(origin):
 
 
 def _numbers(text):
-    # As doubles first: every reader here takes them so.
+    # As doubles first, like all readers.
     return np.array([float(part) for part in text.split()]).astype(REAL)

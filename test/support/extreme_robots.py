@@ -1,4 +1,4 @@
-"""Robots that no factory makes: where rounding hurts most. All as URDF text."""
+"""Deliberately ill-conditioned robots, as URDF text."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ FEATHER, ANVIL = 1e-6, 100.0
 
 
 def extreme_robots():
-    """Return a dict: what is extreme about a robot → its URDF text."""
+    """Return a dict: description of a robot → its URDF text."""
     light_first = [FEATHER, ANVIL] * 4
     return {
         '8 turning links, 1e-6 kg and 100 kg in turn': chain(light_first),
@@ -35,7 +35,7 @@ def chain(masses, kind='continuous', length=0.3):
     rng = np.random.default_rng(len(masses))
     parts = ['<robot name="chain"><link name="link0"/>']
     for i, mass in enumerate(masses):
-        # Second moments about planes: those of a real body that nothing makes symmetric.
+        # Second moments about planes: those of a possible, asymmetric body.
         planes = mass * length**2 * np.array([0.08, 0.01, 0.012])
         tensor = planes.sum() - planes
         turn, axis = rng.uniform(-3.0, 3.0, 3), rng.normal(size=3)
@@ -78,7 +78,7 @@ _CART = (
 
 
 def _carried(text, kind, distance, inertial='', root='ground', inner=None):
-    # Without a cart the robot's own root link is what the joint carries.
+    # Without a cart the joint carries the robot's root link.
     inner = inner or _root(text)
     cart, weld = inner, ''
     if inertial:

@@ -1,4 +1,4 @@
-"""The extreme robots by all routes, once per process: for their test and docs/accuracy.md."""
+"""Cached comparisons of the extreme robots, for their test and docs/accuracy.md."""
 
 from functools import cache
 

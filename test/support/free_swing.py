@@ -1,4 +1,4 @@
-"""An arm that falls and swings with no efforts at all, integrated with our forward dynamics."""
+"""An arm that swings without efforts, integrated with `forward_dynamics`."""
 
 from functools import cache
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from .robots import ARM7, public_robot
 SECONDS = 3.0
 SAMPLES = 100
 
-# The integrator's own tolerance, relative to each joint's position and speed.
+# Tolerance of the integrator, relative to position and speed of each joint.
 TOLERANCE = 1e-12
 
 ARMS = {
@@ -29,8 +29,7 @@ def free_arm(name):
     """
     Return one of ARMS as URDF text.
 
-    Its fingers are fixed: with nothing to stop them they would slide off to where no gripper
-    ends, and their energy would be all that is seen.
+    Its fingers are fixed: without limits they would slide away, and their energy would dominate.
 
     """
     return ARMS[name].read_text().replace('type="prismatic"', 'type="fixed"')
@@ -38,11 +37,11 @@ def free_arm(name):
 
 class Swing(NamedTuple):
     """
-    What a swing of SECONDS shows.
+    The errors of a swing of SECONDS.
 
     `drift` is the largest change of the total energy divided by the largest kinetic energy,
     `kinetic` [J]; `mujoco` the largest error of the acceleration against MuJoCo's at SAMPLES
-    states on the way; `evaluations` how often forward dynamics was asked.
+    states on the way; `evaluations` the number of calls of forward dynamics.
 
     """
 
@@ -54,7 +53,7 @@ class Swing(NamedTuple):
 
 @cache
 def swing(name):
-    """Let one of ARMS go and return its Swing."""
+    """Simulate one of ARMS and return its Swing."""
     text = free_arm(name)
     model = RobotModel.from_urdf(text)
     start = starting_position(model)

@@ -1,4 +1,4 @@
-"""A robot whose names are attacks on a page: markup, scripts, templates, what plotly reads."""
+"""A robot with names that attack a page: markup, scripts, templates, syntax of plotly."""
 
 from itertools import cycle
 import re
@@ -25,7 +25,7 @@ NAMES = (
 
 def hostile_urdf():
     """
-    Return the arm of this repository with other names, and who is called what.
+    Return the arm of this repository with hostile names.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Runs a recorded program on floats, so that it can be judged without a compiler."""
+"""Runs a recorded program on floats, without a compiler."""
 
 import math
 
@@ -16,7 +16,7 @@ _FUNCTIONS = {
 
 
 def run(program, results, **inputs):
-    """Return the values of some results, given arrays for the inputs."""
+    """Return the values of results for arrays of inputs."""
     values = {}
 
     def value(item):

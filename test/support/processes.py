@@ -1,6 +1,7 @@
-"""The node in a process of its own, and a client that talks to it over DDS."""
+"""The node as a process, and a client over DDS."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -8,19 +9,21 @@ import time
 
 from dynamics_interfaces.msg import OutputState
 from dynamics_interfaces.srv import GetGravityTorque
+from rcl_interfaces.srv import SetParameters
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_sensor_data, QoSDurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import SetBool
 
 LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
-# A limit for what never comes, not for what is slow: a busy machine takes long to start a node.
+# Timeout of all waits, s: a busy machine takes long to start a node.
 PATIENCE = 60.0
 
 
-# Longest time for an answer before the request is sent again, s.
+# Time after which a request is sent again, s.
 ANSWER = 8.0
 
 
@@ -62,7 +65,7 @@ class NodeProcess:
         return self.process.returncode, output
 
     def close(self):
-        """End it if it still runs, and check that nothing went wrong inside."""
+        """End the process, and check that it has printed no traceback."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGINT)
         try:
@@ -80,7 +83,7 @@ class MarkersProcess(NodeProcess):
 
 
 class Client:
-    """Publishes states, calls services and records what the node says."""
+    """Publishes states, calls services and records commands and output states."""
 
     def __init__(self, name='test_client', **options):
         self.context = rclpy.Context()
@@ -94,7 +97,7 @@ class Client:
         self.commands, self.outputs = [], []
 
     def record_commands(self, topic='forward_effort_controller/commands'):
-        """Listen to the command topic; `commands` holds (time, list of efforts)."""
+        """Record `commands`, (time, list of efforts), and `outputs`."""
         self.node.create_subscription(
             Float64MultiArray,
             topic,
@@ -106,7 +109,7 @@ class Client:
         )
 
     def listen(self, kind, topic, latched=False):
-        """Return a list that grows by every message on a topic."""
+        """Return a list that receives all messages of a topic."""
         received = []
         self.node.create_subscription(
             kind, topic, received.append, LATCHED if latched else qos_profile_sensor_data
@@ -114,7 +117,7 @@ class Client:
         return received
 
     def publish(self, names, position, velocity=(), effort=()):
-        """Publish one joint state, stamped now."""
+        """Publish one joint state with the current time."""
         message = JointState(
             name=list(names),
             position=[float(q) for q in position],
@@ -125,13 +128,13 @@ class Client:
         self.states.publish(message)
 
     def until(self, condition, action=None, timeout=PATIENCE, period=0.01):
-        """Spin, doing `action` every period, until a condition holds; return its value."""
+        """Spin until a condition holds, with an `action` every period; return its value."""
         end = time.monotonic() + timeout
         due = time.monotonic()
         while not (result := condition()):
             if time.monotonic() > end:
-                heard = [f'{output.name} {output.reason}' for output in self.outputs[-3:]]
-                raise AssertionError(f'not within {timeout} s: {condition}; output: {heard}')
+                last = [f'{output.name} {output.reason}' for output in self.outputs[-3:]]
+                raise AssertionError(f'not within {timeout} s: {condition}; output: {last}')
             if action is not None and time.monotonic() >= due:
                 action()
                 due += period
@@ -139,7 +142,7 @@ class Client:
         return result
 
     def during(self, seconds, action=None, period=0.01):
-        """Spin for some time, doing `action` every period."""
+        """Spin for a duration, with an `action` every period."""
         end = time.monotonic() + seconds
         self.until(lambda: time.monotonic() >= end, action, seconds + PATIENCE, period)
 
@@ -155,38 +158,44 @@ class Client:
             try:
                 self.until(future.done, action, min(ANSWER, timeout))
             except AssertionError:
-                # A service is said to be ready a moment before both ends are matched, and what
-                # is sent in that moment is lost. Every request here may be sent twice.
+                # A service is ready a moment before both ends are matched; a request in that
+                # moment is lost. All requests here may be sent twice.
                 client.remove_pending_request(future)
                 if time.monotonic() > end:
                     raise
                 continue
             return future.result()
 
+    def ask(self, kind, action=None, **fields):
+        """Call the service of the node named like its type: SetGravity is ~/set_gravity."""
+        name = re.sub('(?<=[a-z])(?=[A-Z])', '_', kind.__name__).lower()
+        return self.call(kind, f'/dynamics_node/{name}', kind.Request(**fields), action)
+
+    def set_node_parameter(self, name, value, action=None):
+        """Set a parameter of the node; return the result."""
+        # rclpy takes an empty list for bytes.
+        kind = Parameter.Type.DOUBLE_ARRAY if value == [] else None
+        message = Parameter(name, kind, value).to_parameter_msg()
+        [result] = self.ask(SetParameters, action, parameters=[message]).results
+        return result
+
     def until_heard(self, action):
         """Wait until the node receives the joint states that `action` publishes."""
-        # Discovery has two sides: that we know the node's subscription does not mean that the
-        # node knows us.
+        # Discovery has two sides: the client may know the subscription of the node before the
+        # node knows the client.
         self.until(self.states.get_subscription_count, action)
-        self.until(
-            lambda: (
-                self.call(
-                    GetGravityTorque, '/dynamics_node/get_gravity_torque', action=action
-                ).success
-            ),
-            action,
-        )
+        self.until(lambda: self.ask(GetGravityTorque, action).success, action)
 
     def enable(self, value, action=None):
-        """Ask for output on or off."""
+        """Enable or disable the output."""
         return self.call(SetBool, '/dynamics_node/enable', SetBool.Request(data=value), action)
 
     def output_is(self, name):
-        """Return a condition: the node's output is in a state."""
+        """Return a condition: the output of the node is in a state."""
         return lambda: bool(self.outputs) and self.outputs[-1].name == name
 
     def close(self):
-        """Leave ROS."""
+        """Shut ROS down."""
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)

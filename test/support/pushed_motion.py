@@ -1,4 +1,4 @@
-"""A driven and pushed robot with friction: MuJoCo accelerates it, scipy integrates."""
+"""A driven and pushed robot with friction, by MuJoCo and scipy's integrator."""
 
 from typing import NamedTuple
 
@@ -8,15 +8,15 @@ from scipy.integrate import solve_ivp
 
 from .mujoco_oracle import MujocoOracle
 
-# The integrator's; what remains is the observer's own.
+# Tolerance of the integrator: the remaining error is that of the observer.
 TOLERANCE = 1e-9
-# How fast the drive brings a joint back to its reference, 1/s: it gives way to a push.
+# Rate at which the drive returns a joint to its reference, 1/s: low, so that a push moves it.
 STIFFNESS = 5.0
 
 
 class Motion(NamedTuple):
     """
-    What was measured at every time, and the truth beside it.
+    Measurements, and the true external efforts.
 
     `time` (k,) [s]; `q`, `qd`, `effort` of the motors, `external` efforts, and `lagged`, those
     behind a first-order lag: (k, n) each.
@@ -32,7 +32,7 @@ class Motion(NamedTuple):
 
 
 class PushedRobot:
-    """A robot on a reference motion of one swing per second, with everything by MuJoCo."""
+    """A robot on a reference motion of one swing per second, by MuJoCo."""
 
     def __init__(self, text, names, friction, seed=0, amplitude=0.5):
         """
@@ -51,7 +51,7 @@ class PushedRobot:
         self._fold, self._offset = self.oracle.fold(names)
 
     def friction(self, qd):
-        """Return what friction takes, shape (n,)."""
+        """Return the friction, shape (n,)."""
         viscous, dry, smoothing = self._friction
         return viscous * qd + dry * np.tanh(qd / smoothing)
 
@@ -69,7 +69,7 @@ class PushedRobot:
         return self.oracle.inverse_dynamics(self.names, q, qd, qdd) + self.friction(qd)
 
     def wrench_on_tip(self, q, wrench):
-        """Return what a force [N] and a moment [N m] at the tip are in the joints, shape (n,)."""
+        """Return the joint efforts of a force [N] and a moment [N m] at the tip, shape (n,)."""
         model, data = self.oracle.model, self.oracle.data
         data.qpos[:] = self._fold @ q + self._offset
         mujoco.mj_fwdPosition(model, data)
@@ -126,7 +126,7 @@ class PushedRobot:
 
 
 def tip(model):
-    """Return the body of a MuJoCo model that the most joints move."""
+    """Return the body of a MuJoCo model with the most joints before it."""
     depth = [0] * model.nbody
     for body in range(1, model.nbody):  # parents come before their children
         depth[body] = depth[model.body_parentid[body]] + model.body_dofnum[body]
@@ -134,12 +134,12 @@ def tip(model):
 
 
 def halved(times):
-    """Return times with one more in the middle of every step."""
+    """Return times with the middles of all steps added."""
     return np.sort(np.concatenate([times, 0.5 * (times[1:] + times[:-1])]))
 
 
 def irregular_times(rng, seconds, mean_step, through=()):
-    """Return times from 0, at steps of 0.2 to 1.8 times the mean one, and some times besides."""
+    """Return times from 0 at steps of 0.2 to 1.8 times the mean, and those of `through`."""
     steps = mean_step * rng.uniform(0.2, 1.8, int(2 * seconds / mean_step))
     times = np.concatenate([[0.0], np.cumsum(steps)])
     return np.unique(np.concatenate([times[times < seconds], [seconds], through]))

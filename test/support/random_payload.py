@@ -1,10 +1,10 @@
-"""A payload as the judges see it: one more link in the URDF's text, on a fixed joint."""
+"""A payload for the references: another link in the URDF, on a fixed joint."""
 
 import numpy as np
 
 
 def random_body(rng):
-    """Return mass, center of mass and inertia tensor of a real body: of eight points."""
+    """Return mass, center of mass and inertia tensor of eight points."""
     points, masses = rng.normal(0.0, 0.1, (8, 3)), rng.uniform(0.1, 0.5, 8)
     com = masses @ points / masses.sum()
     r = points - com
@@ -14,7 +14,7 @@ def random_body(rng):
 
 def with_payload_link(text, link, mass, com, inertia):
     """
-    Return URDF text in which a link carries one more.
+    Return URDF text with another link fixed to a link.
 
     Parameters
     ----------

@@ -34,13 +34,13 @@ def arm7_report():
 
 @cache
 def weak_report():
-    """Return that of the same arm with motors that cannot hold it."""
+    """Return the report of the same arm with motors too weak to hold it."""
     return make_report(ARM7.read_text().replace('effort="90"', 'effort="15"'), samples=SAMPLES)
 
 
 @cache
 def unlimited_report():
-    """Return that of the same arm without any effort limit."""
+    """Return the report of the same arm without effort limits."""
     text = ARM7.read_text()
     for limit in ('90', '30', '12', '40'):
         text = text.replace(f'effort="{limit}"', 'effort="0"')
@@ -49,25 +49,25 @@ def unlimited_report():
 
 @cache
 def pendulum_report():
-    """Return that of one joint."""
+    """Return the report of a pendulum."""
     return make_report(PENDULUM, samples=SAMPLES)
 
 
 @cache
 def refused_report():
-    """Return that of a robot that cannot exist."""
+    """Return the report of a physically impossible robot."""
     return make_report(REFUSED, samples=SAMPLES)
 
 
 @cache
 def block_report():
-    """Return that of a robot that cannot move."""
+    """Return the report of a robot without joints."""
     return make_report(BLOCK, samples=SAMPLES)
 
 
 @cache
 def hostile_report():
-    """Return that of a robot whose names are attacks."""
+    """Return the report of a robot with hostile names."""
     return make_report(hostile_urdf()[0], samples=SAMPLES)
 
 

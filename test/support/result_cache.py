@@ -1,4 +1,4 @@
-"""All public robots by all routes, once per process: what tests and docs/accuracy.md share."""
+"""Cached comparisons of all public robots, for tests and docs/accuracy.md."""
 
 from functools import cache
 from typing import NamedTuple
@@ -9,11 +9,11 @@ import numpy as np
 from .cross_library import Routes, worst_of
 from .robots import public_robot, public_robots
 
-# What is promised about every robot and quantity, against Pinocchio and against 80 bits.
+# Promised bound of all errors relative to Pinocchio and 80-bit arithmetic.
 BOUND = 1e-11
 
-# MuJoCo sums about the center of mass of the whole robot, and its C is the polar form of
-# its bias here; both cost it digits, which its own error against 80 bits shows.
+# MuJoCo sums about the center of mass of the robot, and its C is the polar form of its bias here:
+# both lose digits, as its error relative to 80-bit arithmetic shows.
 MUJOCO_BOUND = 1e-9
 
 STATES = 5
@@ -21,10 +21,10 @@ STATES = 5
 
 class Row(NamedTuple):
     """
-    The worst of one robot over its random states.
+    The largest errors of one robot over its random states.
 
-    `errors`, `plain` and `condition` are those of `routes.Comparison`; `replaced` names the
-    links whose inertia MuJoCo refused.
+    `errors`, `plain` and `condition`: see `cross_library.Comparison`. `replaced`: links whose
+    inertia MuJoCo refuses.
 
     """
 
@@ -38,7 +38,7 @@ class Row(NamedTuple):
 
 
 class LeftOut(NamedTuple):
-    """A URDF that is not compared, and why not."""
+    """A URDF that is not compared, with the reason."""
 
     name: str
     reason: str
@@ -58,7 +58,7 @@ def compare(name):
 
 
 def row(name, text, model, states=STATES):
-    """Compare one robot at random states that depend on nothing but its number of joints."""
+    """Compare one robot at random states, seeded by its number of joints."""
     routes = Routes(text, model)
     rng = np.random.default_rng(len(model.joint_names))
     results = [routes.compare(rng) for _ in range(states)]
@@ -74,7 +74,7 @@ def row(name, text, model, states=STATES):
 
 
 def sweep():
-    """Return the rows of all public robots that are compared, and what is left out."""
+    """Return the rows of all compared public robots, and those left out."""
     results = [compare(name) for name in public_robots()]
     return (
         [result for result in results if isinstance(result, Row)],

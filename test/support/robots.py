@@ -68,7 +68,7 @@ def random_urdf(seed, joints=None, with_mimic=True, mass_scale=1.0, prismatic=0.
             elements.append(_link(f'tool{i}', rng, mass_scale, rng.random() < 0.7))
             elements.append(_joint(f'fixed{i}', 'fixed', f'link{i}', f'tool{i}', rng))
             carriers.append(f'tool{i}')
-    # Links and joints in any order: URDF does not ask for one.
+    # Links and joints in random order, which URDF allows.
     rng.shuffle(elements)
     return '<robot name="random">\n' + '\n'.join(elements) + '\n</robot>'
 
@@ -94,7 +94,7 @@ def _link(name, rng, mass_scale, with_inertial=True):
     if not with_inertial:
         return f'<link name="{name}"/>'
     mass = rng.uniform(0.1, 5.0) * mass_scale
-    # Second moments about planes are positive, so the tensor belongs to a real body.
+    # Second moments about planes are positive: the tensor is physically possible.
     planes = mass * rng.uniform(0.001, 0.02, 3)
     about_axes = planes.sum() - planes
     rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
@@ -120,7 +120,7 @@ def _link(name, rng, mass_scale, with_inertial=True):
 def _joint(name, kind, parent, child, rng, mimic=''):
     axis = rng.normal(size=3)
     axis /= np.linalg.norm(axis)
-    # Drawn for every joint, so that a change of one property leaves all other numbers alone.
+    # Drawn for all joints: a change of one property leaves all other numbers unchanged.
     axis_text = '' if kind == 'fixed' else f'<axis xyz="{_numbers(axis)}"/>'
     limit = '' if kind == 'fixed' else '<limit lower="-3" upper="3" effort="90" velocity="3"/>'
     return (

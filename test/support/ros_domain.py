@@ -1,20 +1,20 @@
-"""ROS domains that nothing else on this machine is in, as far as it says so."""
+"""ROS domains that no other test run on this machine uses."""
 
 import os
 import socket
 
-# A domain is taken by binding its port, as ROS's own domain_coordinator does it. The operating
-# system gives the port back when the process ends, however it ends.
+# A domain is claimed by binding its port, as ROS's domain_coordinator does. The operating system
+# frees the port at the end of the process.
 FIRST_PORT = 32768
-# Domains above 101 use ports that Linux also lends to others.
+# Domains above 101 use ephemeral ports of Linux.
 DOMAINS = 101
-# Far from what a person would number by hand; any step visits all, 101 is prime.
+# Any step visits all domains, because 101 is prime.
 STEP = 37
 
 
 def claim():
     """
-    Return a domain that is this process's own until it ends.
+    Return a domain claimed until the end of this process.
 
     The first choice is ROS_DOMAIN_ID. Each call returns another domain.
 
@@ -27,7 +27,7 @@ def claim():
         except OSError:
             port.close()
         else:
-            port.detach()  # stays bound, and nobody complains of a socket that is left open
+            port.detach()  # stays bound, without a warning about an open socket
             return domain
     raise RuntimeError(
         f'expected a free ROS domain from 1 to {DOMAINS}, found none: end test '

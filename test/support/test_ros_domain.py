@@ -1,4 +1,4 @@
-"""Every claim is another domain, and a domain is free again when its process ends."""
+"""Claims of ROS domains."""
 
 import subprocess
 import sys
@@ -10,7 +10,7 @@ CODE = 'from support.ros_domain import claim; print(claim())'
 
 
 def claimed(chosen):
-    """Return the domain that another process claims, which ends then."""
+    """Return the domain claimed by another process, which then ends."""
     return int(
         subprocess.run(
             [sys.executable, '-c', CODE],

@@ -1,4 +1,4 @@
-"""What a campaign takes for a finding, and that it leaves an input that finds it again."""
+"""Findings of a campaign, each with an input that reproduces it."""
 
 import time
 from types import SimpleNamespace
@@ -43,7 +43,7 @@ def test_the_same_seed_draws_the_same_inputs(tmp_path):
     assert seen[0] == seen[1] != seen[2]
 
 
-def test_an_exception_is_a_finding_made_small_and_written_down(tmp_path):
+def test_an_exception_is_a_finding_with_a_small_input(tmp_path):
     def check(data):
         if data > 999:
             raise KeyError('far too much')
@@ -68,7 +68,7 @@ def test_a_warning_is_a_finding(tmp_path):
     assert finding.error == 'RuntimeWarning: overflow'
 
 
-def test_what_fails_now_and_then_is_a_finding(tmp_path):
+def test_an_input_that_fails_only_sometimes_is_a_finding(tmp_path):
     calls = []
 
     def check(data):
@@ -108,11 +108,11 @@ def test_an_input_that_never_ends_is_given_up(tmp_path, monkeypatch):
     assert result.answers['given up'] >= 1
 
 
-@pytest.mark.parametrize('kept, found', [(200_000, True), (0, False)])
-def test_memory_that_grows_is_a_finding(tmp_path, monkeypatch, kept, found):
+@pytest.mark.parametrize('kept, is_finding', [(200_000, True), (0, False)])
+def test_memory_that_grows_is_a_finding(tmp_path, monkeypatch, kept, is_finding):
     monkeypatch.setattr(campaign, 'MAX_GROWTH', 20.0)
     leak = []
     result = run(lambda data: leak.append(b'x' * kept) or [], tmp_path)
     # 180 of the inputs come after the first measurement: 36 MB.
-    assert ('memory' in result.findings) == found
-    assert (result.late_memory - result.early_memory > 20.0) == found
+    assert ('memory' in result.findings) == is_finding
+    assert (result.late_memory - result.early_memory > 20.0) == is_finding

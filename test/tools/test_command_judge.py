@@ -1,4 +1,4 @@
-"""The judge of commands finds what must not be, and nothing else."""
+"""The judge of commands: every violation is found, and correct commands are not accused."""
 
 import random
 
@@ -18,7 +18,7 @@ def judge():
 
 
 def violations(judge):
-    """Return what the judge says in the end."""
+    """Return all violations."""
     judge.settle()
     assert judge.count == len(judge.violations)
     return judge.violations
@@ -38,7 +38,7 @@ def test_a_ramp_a_little_faster_than_the_rate_limit_is_found(judge):
     assert 'joint 0: the step from' in judge.violations[0]
 
 
-def test_the_other_joint_is_looked_at_too(judge):
+def test_all_joints_are_judged(judge):
     judge.command(0.01, [0.0, -2.1])
     [text] = violations(judge)
     assert 'joint 1: the step from 0 to -2.1' in text
@@ -109,7 +109,7 @@ def test_silence_while_off(judge, state):
     assert text.startswith('at 2.1') and f'expected silence in {state}' in text
 
 
-def test_what_was_written_first_is_judged_first_whenever_it_arrives(judge):
+def test_messages_are_judged_in_the_order_of_writing(judge):
     judge.state(2.0, 'FAULT')
     judge.command(1.0, [0.0, 0.0])
     judge.command(3.1, [0.0, 0.0])

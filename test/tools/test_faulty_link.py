@@ -1,4 +1,4 @@
-"""The line: every fault does what its name says, to the messages that it is meant for."""
+"""The faults of the link."""
 
 import math
 
@@ -6,13 +6,13 @@ from builtin_interfaces.msg import Time
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
-from soak.faulty_link import BUSY, FAULTS, FLOOD, Line, MANY, shifted, stamp_of
+from soak.faulty_link import BUSY, FAULTS, FaultyLink, FLOOD, MANY, shifted, stamp_of
 
 NAMES = ['a', 'b', 'c', 'd']
 
 
 def state(k=0, name=NAMES):
-    """Return the k-th state of a robot: its joints stand at k, k + 0.1, ..."""
+    """Return the k-th state of a robot, with joints at k, k + 0.1, ..."""
     message = JointState(
         name=list(name),
         position=[k + 0.1 * i for i in range(len(name))],
@@ -24,14 +24,14 @@ def state(k=0, name=NAMES):
 
 
 def put_through(fault, count=1, seed=0):
-    """Return what comes out for each of the first `count` states."""
-    line = Line(seed)
-    line.switch(fault)
-    return [line.out(state(k)) for k in range(count)]
+    """Return the output for each of the first `count` states."""
+    link = FaultyLink(seed)
+    link.switch(fault)
+    return [link.out(state(k)) for k in range(count)]
 
 
 def only(outputs):
-    """Return the only message that came out for the only state."""
+    """Return the only message of the only state."""
     [[message]] = outputs
     return message
 
@@ -46,32 +46,32 @@ def by_name(message):
     }
 
 
-def test_without_a_fault_it_is_a_line():
-    line = Line()
+def test_without_a_fault_messages_pass():
+    link = FaultyLink()
     message = state()
-    assert line.fault == 'none'
-    assert line.out(message)[0] is message
+    assert link.fault == 'none'
+    assert link.out(message)[0] is message
 
 
 @pytest.mark.parametrize('fault', sorted(FAULTS))
-def test_nothing_that_came_in_is_changed_in_place(fault):
-    line = Line()
-    line.switch(fault)
+def test_no_message_is_changed_in_place(fault):
+    link = FaultyLink()
+    link.switch(fault)
     for k in range(5):
         message = state(k)
-        line.out(message)
+        link.out(message)
         assert message == state(k)
 
 
 @pytest.mark.parametrize('fault', ['', 'flod', 'nan/0', 'nan/x', 'nan/-1'])
 def test_an_unknown_fault_is_refused_with_the_known_ones(fault):
-    line = Line()
+    link = FaultyLink()
     with pytest.raises(ValueError, match=r'expected one of all_nan, bag_loop, duplicated.*got'):
-        line.switch(fault)
-    assert line.fault == 'none'
+        link.switch(fault)
+    assert link.fault == 'none'
 
 
-def test_a_fault_may_be_meant_for_some_messages_only():
+def test_a_fault_of_every_third_message():
     out = put_through('silent/3', 7)
     assert [len(messages) for messages in out] == [1, 1, 0, 1, 1, 0, 1]
 
@@ -136,7 +136,7 @@ def test_many_names_are_a_message_that_can_be_read():
     assert 16e6 <= len(only(put_through('million_names'))) < 17e6
 
 
-def test_a_line_that_carries_a_million_names_carries_nothing_else_for_a_while():
+def test_during_a_million_names_no_state_passes():
     out = put_through('million_names/50', 50 + BUSY + 4)
     assert [len(messages) for messages in out] == [*[1] * 50, *[0] * BUSY, 1, 1, 1, 1]
     assert isinstance(out[49][0], bytes) and out[-1][0].name == NAMES
@@ -156,11 +156,11 @@ def test_stamps():
 
 
 def test_a_bag_loop_repeats_what_came_before_it():
-    line = Line()
+    link = FaultyLink()
     for k in range(4):
-        line.out(state(k))
-    line.switch('bag_loop')
-    out = [line.out(state(k))[0].header.stamp.sec for k in range(4, 16)]
+        link.out(state(k))
+    link.switch('bag_loop')
+    out = [link.out(state(k))[0].header.stamp.sec for k in range(4, 16)]
     # Five states, over and over: those before and the one at which it began.
     assert out[:5] == out[5:10] and {*out} == {1000, 1001, 1002, 1003, 1004}
 

@@ -1,26 +1,26 @@
-"""Latencies of commands that say nothing about the state that they answer."""
+"""Latencies of commands, which have no stamps."""
 
 import math
 
 import pytest
-from soak.latency import Latency, REMEMBERED
+from soak.latency import HISTORY, Latency
 
 
 @pytest.fixture
 def latency():
-    """Return one whose output is ACTIVE."""
+    """Return a Latency with an ACTIVE output."""
     latency = Latency()
     latency.state(0.0, 'ACTIVE')
     return latency
 
 
 def values(latency):
-    """Return what was found in the end, in ms."""
+    """Return all latencies, ms."""
     latency.settle()
     return [round(1e3 * value, 6) for value in latency.values]
 
 
-def test_each_command_is_paired_with_its_state_in_whatever_order_they_arrive(latency):
+def test_each_command_is_paired_with_its_state_in_any_order_of_arrival(latency):
     latency.answer(1.0012, 7)
     latency.command(1.0010)
     latency.sent(1.0, 7)
@@ -61,7 +61,7 @@ def test_commands_of_a_stop_answer_no_state(latency):
     assert math.isnan(latency.quantile(0.99))
 
 
-def test_what_is_on_its_way_is_waited_for(latency):
+def test_messages_in_transit_are_awaited(latency):
     latency.sent(1.0, 1)
     latency.command(1.001)
     latency.settle(1.5)
@@ -69,8 +69,8 @@ def test_what_is_on_its_way_is_waited_for(latency):
     assert values(latency) == [1.0]
 
 
-def test_states_that_nobody_answers_are_forgotten(latency):
-    for stamp in range(2 * REMEMBERED):
+def test_old_states_without_an_answer_are_dropped(latency):
+    for stamp in range(2 * HISTORY):
         latency.sent(1.0, stamp)
     latency.settle()
-    assert len(latency._sent) == REMEMBERED
+    assert len(latency._sent) == HISTORY

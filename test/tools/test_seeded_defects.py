@@ -1,16 +1,12 @@
-"""Each thing that a target must notice, planted and noticed."""
+"""Seeded defects: each is detected by its target."""
 
 import json
-import os
-from pathlib import Path
-import subprocess
-import sys
 
 from fuzz.seeded_defects import SEEDED
 import pytest
+from support.python_process import run_tool
 
-ROOT = Path(__file__).parents[2]
-NOTICED = {
+DETECTED = {
     'nothing in a description': "['taken",
     'a file is opened': "OpenedError: open ('/dev/null'",
     'a file is opened and the error caught': "OpenedError: open ('/dev/null'",
@@ -33,24 +29,17 @@ NOTICED = {
 
 
 @pytest.fixture(scope='module')
-def said():
-    """Return what the targets say of each defect."""
-    run = subprocess.run(
-        [sys.executable, '-m', 'fuzz.seeded_defects'],
-        capture_output=True,
-        text=True,
-        cwd=ROOT / 'tools',
-        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
-        check=False,
-    )
+def responses():
+    """Return the answer of a target for each defect."""
+    run = run_tool('fuzz.seeded_defects')
     assert run.returncode == 0, run.stderr
     return json.loads(run.stdout)
 
 
-def test_everything_planted_is_looked_at():
-    assert list(NOTICED) == list(SEEDED)
+def test_all_seeded_defects_are_tested():
+    assert list(DETECTED) == list(SEEDED)
 
 
-@pytest.mark.parametrize('defect', NOTICED)
-def test_what_is_planted_is_noticed(defect, said):
-    assert said[defect].startswith(NOTICED[defect])
+@pytest.mark.parametrize('defect', DETECTED)
+def test_a_seeded_defect_is_detected(defect, responses):
+    assert responses[defect].startswith(DETECTED[defect])

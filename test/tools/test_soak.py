@@ -1,39 +1,28 @@
-"""The soak itself, for some seconds: it ends, prints its table, and nothing was lost."""
+"""A soak of some seconds, and the faults whose detection needs a running node."""
 
-import os
-from pathlib import Path
-import subprocess
-import sys
+from types import SimpleNamespace
 
-import pytest
-
-ROOT = Path(__file__).parents[2]
+from soak.faults import FAULTS, STATE_TIMEOUT
+from support.python_process import run_tool
 
 
-@pytest.fixture
-def run():
-    """Return a function that runs the soak: exit code and output."""
-    path = os.pathsep.join(
-        [str(ROOT / 'test'), str(ROOT / 'tools'), str(ROOT), os.environ.get('PYTHONPATH', '')]
-    )
-
-    def run(*arguments):
-        done = subprocess.run(
-            [sys.executable, '-m', 'soak', *arguments],
-            text=True,
-            timeout=110,
-            env={**os.environ, 'PYTHONPATH': path},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-        )
-        return done.returncode, done.stdout
-
-    return run
-
-
-def test_some_seconds_of_soak_lose_nothing(run):
-    code, output = run('--minutes', '0.13', '--seed', '1')
-    assert code == 0, output
-    assert 'Nothing lost, nothing leaked, nothing out of limits.' in output
+def test_some_seconds_of_soak_lose_nothing():
+    run = run_tool('soak', '--minutes', '0.13', '--seed', '1', timeout=110)
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert 'Nothing lost, nothing leaked, nothing out of limits.' in run.stdout
     for row in ('joint states accepted', 'state to command, p99', 'memory of the node'):
-        assert row in output
+        assert row in run.stdout
+
+
+def test_a_stopped_node_continues_before_it_reports_the_fault():
+    done = []
+    rig = SimpleNamespace(
+        during=done.append,
+        processes=SimpleNamespace(
+            send=lambda process, number: done.append((process, number.name))
+        ),
+    )
+    [fault] = [fault for fault in FAULTS if fault.name == 'node stopped']
+    with fault.inflict(rig):
+        assert [done[0], done[2]] == [('node', 'SIGSTOP'), ('node', 'SIGCONT')]
+        assert done[1] > STATE_TIMEOUT

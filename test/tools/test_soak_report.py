@@ -1,4 +1,4 @@
-"""The verdict: clean figures are clean, and every kind of loss is said."""
+"""The verdict of a soak: every kind of loss is reported."""
 
 from collections import Counter
 import io
@@ -8,20 +8,20 @@ import pytest
 from rich.console import Console
 from soak.command_judge import CommandJudge
 from soak.latency import Latency
-from soak.message_accounting import Books
-from soak.report import failures, MEMORY, print_report
+from soak.message_accounting import MessageAccounting
+from soak.report import failures, MAX_GROWTH, print_report
 from soak.soak import Tally
 
 
 @pytest.fixture
 def soak():
-    """Return a soak in which all went well."""
+    """Return a successful soak."""
     vitals = {'memory': 200.0, 'files': 20, 'threads': 17}
     latency = Latency()
     latency.values.extend([0.001, 0.002, 0.004])
     return SimpleNamespace(
         tallies={'nan': Tally(3, 3), 'flood': Tally()},
-        books=Books(),
+        accounting=MessageAccounting(),
         latency=latency,
         before=dict(vitals),
         after=dict(vitals),
@@ -32,7 +32,7 @@ def soak():
 
 @pytest.fixture
 def client():
-    """Return a client that has seen all 10 commands of the node."""
+    """Return a client that has received all 10 commands of the node."""
     judge = CommandJudge([1.0], [1.0])
     judge.commands, judge.lost = 9, 1
     diagnostics = {
@@ -63,58 +63,49 @@ def test_a_clean_soak_has_no_failures_and_prints_its_figures(soak, client):
     assert 'flood' not in text
 
 
-def break_fault(soak, client):
-    soak.tallies['nan'].failures.append('expected FAULT, got ACTIVE')
-
-
-def break_command(soak, client):
+def send_a_command_while_off(soak, client):
     client.judge.command(1.0, [2.0])
     client.judge.settle()
 
 
-def break_books(soak, client):
-    soak.books.missing = 1
+def add(part, key, value):
+    """Return a function that adds to a count of the soak."""
 
+    def damage(soak, client):
+        count = getattr(soak, part)
+        if isinstance(count, dict):
+            count[key] += value
+        else:
+            setattr(count, key, getattr(count, key) + value)
 
-def break_surplus(soak, client):
-    soak.books.surplus = 1
-
-
-def break_answers(soak, client):
-    soak.books.unanswered = 1
-
-
-def break_count(soak, client):
-    client.judge.lost = 0
-
-
-def break_memory(soak, client):
-    soak.after['memory'] += MEMORY + 0.1
-
-
-def break_files(soak, client):
-    soak.after['files'] += 1
+    return damage
 
 
 @pytest.mark.parametrize(
     'damage, sentence',
     [
-        (break_fault, 'nan: expected FAULT, got ACTIVE'),
-        (break_command, 'command at 1.000000: expected silence'),
-        (break_books, 'does not account for 1'),
-        (break_surplus, 'counts 1 too many'),
-        (break_answers, '1 had no command'),
-        (break_count, 'published 10 commands, got 9 and missed 0'),
-        (break_memory, 'grew from 200.0 to 208.1 MB'),
-        (break_files, 'had 20 files and has 21 now'),
+        (
+            lambda soak, _: soak.tallies['nan'].failures.append('expected FAULT, got ACTIVE'),
+            'nan: expected FAULT, got ACTIVE',
+        ),
+        (send_a_command_while_off, 'command at 1.000000: expected silence'),
+        (add('accounting', 'missing', 1), 'does not account for 1'),
+        (add('accounting', 'surplus', 1), 'counts 1 too many'),
+        (add('accounting', 'unanswered', 1), '1 had no command'),
+        (
+            lambda _, client: setattr(client.judge, 'lost', 0),
+            'published 10 commands, got 9 and missed 0',
+        ),
+        (add('after', 'memory', MAX_GROWTH + 0.1), 'grew from 200.0 to 208.1 MB'),
+        (add('after', 'files', 1), 'had 20 files and has 21 now'),
     ],
 )
-def test_whatever_is_lost_leaked_or_wrong_is_said(soak, client, damage, sentence):
+def test_losses_leaks_and_errors_are_reported(soak, client, damage, sentence):
     damage(soak, client)
     assert any(sentence in failure for failure in failures(soak, client))
 
 
-def test_a_run_in_which_not_every_fault_came_judges_no_leak(soak, client):
+def test_a_run_without_every_fault_judges_no_leak(soak, client):
     soak.before = {}
     soak.after['memory'] = 1e4
     assert failures(soak, client) == []

@@ -1,4 +1,4 @@
-"""What can be read of a description that is refused."""
+"""Best-effort reading of defective URDFs."""
 
 from dynamics_node import RobotDescriptionError
 from dynamics_node.urdf import examine_urdf, read_urdf
@@ -7,10 +7,10 @@ from support.arms import arm, changed
 from support.robots import ARM7
 
 
-def test_a_sound_robot_is_as_read():
-    found = examine_urdf(ARM7)
-    assert found.is_whole and not found.problems and not found.unread
-    described, expected = found.description, read_urdf(ARM7)
+def test_a_correct_robot_is_read_whole():
+    result = examine_urdf(ARM7)
+    assert result.is_whole and not result.problems and not result.unread
+    described, expected = result.description, read_urdf(ARM7)
     assert [link.name for link in described.links] == [link.name for link in expected.links]
     assert (described.root, described.warnings) == (expected.root, expected.warnings)
 
@@ -20,26 +20,26 @@ def test_a_sound_robot_is_as_read():
     [
         (arm().replace('mass value="2.5"', 'mass value="x"'), 7, 6, {'link2'}),
         (arm().replace('revolute', 'spherical', 1), 7, 5, set()),
-        (arm().replace('<child link="link5"/>', '<child link="nobody"/>'), 7, 5, set()),
+        (arm().replace('<child link="link5"/>', '<child link="missing"/>'), 7, 5, set()),
         (arm().replace('<link name="link5">', '<link name="link4">'), 6, 4, set()),
         (arm().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0"/>'), 7, 5, set()),
     ],
 )
-def test_parts_that_can_be_read_are_there(text, links, joints, unread):
-    found = examine_urdf(text)
+def test_readable_parts_are_kept(text, links, joints, unread):
+    result = examine_urdf(text)
     with pytest.raises(RobotDescriptionError) as caught:
         read_urdf(text)
-    assert found.problems == caught.value.problems and not found.is_whole
-    assert len(found.description.links) == links and len(found.description.joints) == joints
-    assert found.unread == unread and found.description.root == ''
+    assert result.problems == caught.value.problems and not result.is_whole
+    assert len(result.description.links) == links and len(result.description.joints) == joints
+    assert result.unread == unread and result.description.root == ''
 
 
-def test_wrong_numbers_of_a_whole_robot_leave_it_whole():
-    found = examine_urdf(changed(arm(), 'link3', mass=-2.0))
-    assert found.is_whole and len(found.problems) == 1 and found.description.root == 'base'
+def test_a_robot_with_wrong_numbers_is_still_whole():
+    result = examine_urdf(changed(arm(), 'link3', mass=-2.0))
+    assert result.is_whole and len(result.problems) == 1 and result.description.root == 'base'
 
 
-def test_what_the_urdf_states_is_kept_beside_what_is_taken():
+def test_stated_values_are_kept_beside_the_used_ones():
     text = changed(
         arm(), 'joint2', axis=False, limit={'lower': 1, 'upper': -1, 'effort': 0, 'velocity': None}
     )
@@ -49,7 +49,7 @@ def test_what_the_urdf_states_is_kept_beside_what_is_taken():
     assert joint.effort != joint.effort and joint.lower == -float('inf')
 
 
-def test_shapes_are_a_yes_or_no():
+def test_shapes_are_reduced_to_flags():
     by_name = {
         link.name: link
         for link in examine_urdf(arm().replace('visual', 'collision', 2)).description.links

@@ -1,4 +1,4 @@
-"""Reading a URDF: what is taken, what is refused, and that every problem is named."""
+"""Reading a URDF: accepted and refused descriptions, and the names in every problem."""
 
 from pathlib import Path
 import subprocess
@@ -34,7 +34,7 @@ def problems(text):
     return caught.value.problems
 
 
-def test_values_arrive_in_plain_data():
+def test_values_are_returned_as_plain_data():
     robot = read_urdf(
         two_links(
             '<origin xyz="1 2 3" rpy="0 0 1.5707963267948966"/><axis xyz="0 0 1"/>'
@@ -55,7 +55,7 @@ def test_values_arrive_in_plain_data():
     assert robot.warnings == ()
 
 
-def test_meshes_are_never_looked_at(tmp_path):
+def test_meshes_are_never_opened(tmp_path):
     mesh = (
         '<visual><geometry><mesh filename="{}"/></geometry></visual>'
         '<collision><geometry><mesh filename="{}"/></geometry></collision>'
@@ -71,8 +71,9 @@ def test_meshes_are_never_looked_at(tmp_path):
         assert read_urdf(text).links[1].inertial.mass == 1.0
 
 
-def test_nothing_is_opened_whatever_the_addresses_say():
-    # In a process of its own: an audit hook stays for ever. Once before, for what is loaded once.
+def test_no_address_opens_a_file_or_socket():
+    # In a separate process, because an audit hook cannot be removed. The first read loads
+    # modules; the second one is audited.
     mesh = '<mesh filename="{}"/>'
     parts = ''.join(
         f'<visual><geometry>{mesh.format(address)}</geometry></visual><collision><geometry>'
@@ -111,7 +112,36 @@ def test_nothing_is_opened_whatever_the_addresses_say():
     assert run.returncode == 0, run.stderr
 
 
-def test_what_dynamics_does_not_need_does_not_matter():
+def test_the_first_robot_loads_yourdfpy_without_output():
+    run = subprocess.run(
+        [
+            sys.executable,
+            '-W',
+            'default',
+            '-c',
+            'import logging, sys\n'
+            'logging.basicConfig(level=logging.DEBUG)\n'
+            'from dynamics_node.urdf import read_urdf\n'
+            'assert "yourdfpy" not in sys.modules and "trimesh" not in sys.modules\n'
+            f'read_urdf({random_urdf(1)!r})\n'
+            'assert "yourdfpy" in sys.modules\n',
+        ],
+        capture_output=True,
+        text=True,
+        cwd=Path(__file__).parents[2],
+        check=False,
+    )
+    assert (run.returncode, run.stdout, run.stderr) == (0, '', '')
+
+
+def test_a_link_has_one_read_only_pseudo_inertia():
+    inertial = read_urdf(two_links()).links[1].inertial
+    matrix = inertial.pseudo_inertia
+    assert matrix is inertial.pseudo_inertia and not matrix.flags.writeable
+    np.testing.assert_allclose(matrix[:3, 3], [0, 0, 0.1])
+
+
+def test_other_elements_are_ignored():
     assert read_urdf(
         two_links(
             more='<gazebo><x y="z"/></gazebo><transmission/>'
@@ -121,8 +151,8 @@ def test_what_dynamics_does_not_need_does_not_matter():
     )
 
 
-def test_what_belongs_to_other_name_spaces_reaches_no_other_parser(caplog):
-    # xml:id must be a name, and lxml reads the text once more, its way, where it is none.
+def test_other_name_spaces_are_removed_before_yourdfpy(caplog):
+    # With an xml:id that is no name, lxml (of yourdfpy) would log an error and parse again.
     text = two_links(
         '<axis xyz="0 0 1" xml:id="1 2"/><x:axis xmlns:x="a b" xyz="1 0 0"/>',
         inertial=INERTIAL.replace('<mass', '<mass xml:id="3 4"') + '<visual xml:id="5 6"/>',
@@ -155,7 +185,7 @@ def test_what_belongs_to_other_name_spaces_reaches_no_other_parser(caplog):
         ('<robot name="r">&undefined;</robot>', 'it is not XML: undefined entity'),
     ],
 )
-def test_hopeless_text_is_refused_before_parsing(text, message):
+def test_unreadable_text_is_refused_before_yourdfpy(text, message):
     with pytest.raises(RobotDescriptionError, match=message):
         read_urdf(text)
 
@@ -192,13 +222,13 @@ def test_an_attribute_that_is_missing_is_named(attribute):
 
 
 @pytest.mark.parametrize('value', ['1', '-0.5', '+2.', '.5', '1e-3', ' 7 ', '1E+2'])
-def test_numbers_as_people_write_them_are_taken(value):
+def test_usual_notations_of_numbers_are_accepted(value):
     robot = read_urdf(two_links(inertial=INERTIAL.replace('0 0 0.1', f'0 0 {value}')))
     assert robot.links[1].inertial.placement[2, 3] == float(value)
 
 
 def test_all_problems_are_listed_at_once():
-    found = problems(
+    listed = problems(
         '<robot name="r"><link name="a"/><link name="a"/><link/>'
         '<link name="b"><inertial><mass value="x"/></inertial></link>'
         '<joint name="j" type="floating"><parent link="a"/><child link="nowhere"/></joint>'
@@ -214,7 +244,7 @@ def test_all_problems_are_listed_at_once():
         "link 'b': <mass> value: expected a finite number, got 'x'",
         "link 'b': <inertial> has no <inertia>",
     ):
-        assert any(text in problem for problem in found), text
+        assert any(text in problem for problem in listed), text
 
 
 @pytest.mark.parametrize('kind', ['floating', 'planar'])
@@ -249,7 +279,7 @@ def link_pairs(*pairs):
         (link_pairs(('r', 'x'), ('a', 'b'), ('b', 'a')), 'form a cycle'),
     ],
 )
-def test_what_is_not_one_tree_is_refused(text, message):
+def test_links_that_are_not_one_tree_are_refused(text, message):
     assert any(message in problem for problem in problems(text))
 
 
@@ -274,7 +304,7 @@ def mimics(**leaders):
         (mimics(j='j'), "mimic joints form a cycle: 'j' -> 'j'"),
     ],
 )
-def test_mimic_joints_must_lead_somewhere(text, message):
+def test_mimic_joints_must_end_at_a_movable_joint(text, message):
     assert message in problems(text)
 
 
@@ -296,7 +326,7 @@ def test_axis_is_normalized_or_defaulted_with_a_warning_and_never_zero():
 
 
 def with_diagonal(ixx, iyy, izz, mass=1.0):
-    """Return a robot whose moving link has given principal moments."""
+    """Return a robot with the given principal moments of its moving link."""
     return two_links(
         inertial=(
             f'<inertial><mass value="{mass}"/><inertia ixx="{ixx}" ixy="0" ixz="0" iyy="{iyy}" '
@@ -318,9 +348,9 @@ def test_impossible_inertia_is_refused_and_suspicious_inertia_is_warned_about():
 
 
 def test_rounding_of_a_point_mass_is_not_an_impossible_inertia():
-    # As published for iCub: -5.4e-20 on a link of half a kilogram.
+    # As in the URDF of iCub: -5.4e-20 kg m² on a link of half a kilogram.
     assert read_urdf(with_diagonal(-5.42101e-20, 0, 0, mass=0.526)).warnings == ()
-    # And beyond rounding it is.
+    # Beyond rounding.
     [problem] = problems(with_diagonal(-1e-13, 1, 1))
     assert 'smallest principal moment of inertia is -1e-13' in problem
 
@@ -341,12 +371,12 @@ def test_unknown_effort_and_velocity_limits_are_nan(limit):
     assert (joint.lower, joint.upper) == (-np.inf, np.inf)
 
 
-def test_something_that_is_no_description_is_refused():
+def test_a_source_of_another_type_is_refused():
     with pytest.raises(RobotDescriptionError, match='expected URDF text or a path, got int'):
         read_urdf(7)
 
 
-def test_a_description_comes_from_a_path_with_spaces(tmp_path):
+def test_a_path_may_contain_spaces(tmp_path):
     path = tmp_path / 'my robot.urdf'
     path.write_text(random_urdf(1))
     assert read_urdf(path).name == read_urdf(str(path)).name == 'random'
@@ -354,7 +384,7 @@ def test_a_description_comes_from_a_path_with_spaces(tmp_path):
         read_urdf(str(tmp_path))
 
 
-def test_what_was_forgotten_to_expand_is_refused():
+def test_xacro_is_refused():
     [problem] = problems(
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
         '<xacro:include filename="a"/><link name="a"/></robot>'
@@ -397,7 +427,7 @@ def test_what_was_forgotten_to_expand_is_refused():
         '<:/>',
     ],
 )
-def test_prefixes_that_nothing_declares_are_left_out_as_urdfdom_does(attribute, element):
+def test_undeclared_prefixes_are_ignored_as_by_urdfdom(attribute, element):
     limit = '<limit lower="-1" upper="2" effort="30" velocity="2"/>'
     plain = two_links('<axis xyz="0 0 1"/>' + limit)
     text = plain.replace('<limit', f'<limit {attribute}').replace('</robot>', f'{element}</robot>')
@@ -426,7 +456,7 @@ def test_a_default_name_space_does_not_hide_the_robot():
         '<!DOCTYPE r [<!ATTLIST link a:b CDATA "1">]><robot name="r"><link name="a"/></robot>',
     ],
 )
-def test_what_is_no_xml_or_too_deep_is_refused_with_prefixes_too(text):
+def test_invalid_or_deep_xml_with_prefixes_is_refused(text):
     assert len(problems(text)) == 1
 
 

@@ -1,13 +1,15 @@
-"""Masses as they are drawn: where, how large, and what is wrong in red."""
+"""Shapes of masses: position, size, and defects in red."""
 
 from dynamics_node import RobotModel
 from dynamics_node.visualization import BOX, Picture, SPHERE, TEXT
+from dynamics_node.visualization.bodies import BodyShapes
+from dynamics_node.visualization.scale import make_scale
 import numpy as np
 import pinocchio
 import pytest
 from support.mujoco_oracle import MujocoOracle
 from support.pinocchio_oracle import PinocchioOracle
-from support.robots import ARM7, public_robot, random_state, random_urdf
+from support.robots import ARM7, PENDULUM, public_robot, random_state, random_urdf
 
 ROBOTS = {
     'arm7': ARM7,
@@ -25,10 +27,9 @@ def text_of(name):
 
 
 def drawn(robot, q):
-    """Return the shapes of a robot at rest without any effort."""
-    n = len(robot.joint_names)
-    nothing = np.full(n, np.nan)
-    return Picture(robot.tree, robot.joint_names).shapes(robot, q, np.zeros(n), nothing, nothing)
+    """Return the shapes of a robot without torques."""
+    none = np.full(len(robot.joint_names), np.nan)
+    return Picture(robot.tree, robot.joint_names).shapes(robot, q, None, none, none)
 
 
 def of_group(shapes, group, kind):
@@ -38,6 +39,27 @@ def of_group(shapes, group, kind):
 def rotation(shape):
     x, y, z, w = shape.orientation
     return pinocchio.Quaternion(w, x, y, z).toRotationMatrix()
+
+
+def half_turns():
+    """Return rotations by 0 and pi about each axis, and random ones."""
+    Q = np.linalg.qr(np.random.default_rng(3).normal(size=(50, 3, 3)))[0]
+    axes = np.vstack([np.ones(3), 2.0 * np.eye(3) - 1.0])
+    return np.concatenate([axes[:, :, None] * np.eye(3), Q * np.linalg.det(Q)[:, None, None]])
+
+
+def test_orientations_are_exact_for_any_rotation():
+    scale = make_scale(RobotModel.from_urdf(PENDULUM).tree)
+    body = BodyShapes(['body'], [np.diag([1.0, 2.0, 3.0, 1.0])], [0], scale)
+    for R in half_turns():
+        pose = np.eye(4)
+        pose[:3, :3] = R
+        [box] = of_group(body.shapes(pose[None]), 'inertia', BOX).values()
+        assert np.linalg.norm(box.orientation) == pytest.approx(1.0, abs=1e-15)
+        # The box has its own principal axes: those of a diagonal J, in any order.
+        axes = R.T @ rotation(box)
+        assert np.abs(axes) == pytest.approx(np.round(np.abs(axes)), abs=1e-14)
+        assert np.linalg.det(axes) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize('name', ROBOTS)
@@ -80,7 +102,7 @@ def test_centers_and_boxes_are_those_of_pinocchio(name):
             assert k not in spheres and k not in boxes
             continue
         assert spheres[k].position == pytest.approx(pose.act(inertia.lever), abs=1e-11)
-        # Volumes are as masses, but for what would be too small to be seen.
+        # Volumes are proportional to masses, down to the smallest radius.
         volume = (spheres[k].size[0] / largest) ** 3
         assert volume == pytest.approx(max(inertia.mass / heaviest, 0.08**3), rel=1e-9)
         if k not in boxes:
@@ -91,7 +113,7 @@ def test_centers_and_boxes_are_those_of_pinocchio(name):
         a, b_, c = box.size
         moments = inertia.mass / 12.0 * np.array([b_**2 + c**2, a**2 + c**2, a**2 + b_**2])
         tensor = pose.rotation @ inertia.inertia @ pose.rotation.T
-        # To the thinnest that is drawn: half a thousandth of the robot's length.
+        # Up to the least thickness: half a thousandth of the robot's length.
         assert R @ np.diag(moments) @ R.T == pytest.approx(
             tensor, abs=1e-5 * np.trace(tensor) + 1e-7 * inertia.mass
         )
@@ -106,7 +128,7 @@ PROBLEMS = {
 
 
 @pytest.mark.parametrize('problem', PROBLEMS)
-def test_what_is_no_body_is_red_and_said(problem):
+def test_an_impossible_body_is_red_with_a_text(problem):
     robot = RobotModel.from_urdf(
         '<robot name="r"><link name="a"/><link name="wrong"><inertial>'
         + PROBLEMS[problem]
@@ -131,23 +153,21 @@ def test_frames_without_mass_are_no_problem():
     )
 
 
-def test_bodies_of_the_base_weigh_on_no_joint_and_are_left_out():
+def test_links_of_the_base_are_left_out():
     robot = RobotModel.from_urdf(ARM7)
     assert robot.tree.base_inertia[3, 3] > 0.0
     names = of_group(drawn(robot, robot.neutral_position), 'center_of_mass', SPHERE)
     assert len(names) == len(robot.tree.moving_joint_names)
 
 
-def test_the_payload_is_a_body_of_its_own():
+def test_the_payload_is_a_separate_body():
     empty = RobotModel.from_urdf(ARM7)
     q = np.clip(np.full(8, 0.4), *empty.position_limits.T)
     inertia = np.diag([0.02, 0.03, 0.04])
     robot = empty.with_payload('hand', 2.0, (0.0, 0.1, 0.2), inertia)
     shapes, before = drawn(robot, q), drawn(empty, q)
-    carried = [shape for shape in shapes if shape.group == 'payload']
     assert [shape for shape in shapes if shape.group != 'payload'] == before
-    [sphere] = [shape for shape in carried if shape.kind == SPHERE]
-    [box] = [shape for shape in carried if shape.kind == BOX]
+    [sphere], [box] = (of_group(shapes, 'payload', kind).values() for kind in (SPHERE, BOX))
     assert sphere.number != box.number
     pose = robot.link_pose(q, 'hand')
     assert sphere.position == pytest.approx((pose @ [0.0, 0.1, 0.2, 1.0])[:3], abs=1e-14)
@@ -167,13 +187,11 @@ def test_a_payload_on_the_base_is_not_drawn():
     assert 'payload' not in {shape.group for shape in drawn(robot, robot.neutral_position)}
 
 
-def test_a_feather_beside_a_rock_is_still_to_be_seen():
+def test_a_light_payload_on_a_heavy_robot_is_visible():
     text = random_urdf(0)
     robot = RobotModel.from_urdf(text)
     heaviest = robot.tree.inertia[:, 3, 3].max()
-    feather = robot.with_payload(robot.tip_link, 1e-12 * heaviest)
+    light = robot.with_payload(robot.tip_link, 1e-12 * heaviest)
     q = np.zeros(len(robot.joint_names))
-    spheres = [shape for shape in drawn(feather, q) if shape.kind == SPHERE]
-    largest = max(shape.size[0] for shape in spheres)
-    smallest = min(shape.size[0] for shape in spheres)
-    assert smallest == pytest.approx(0.08 * largest)
+    sizes = [shape.size[0] for shape in drawn(light, q) if shape.kind == SPHERE]
+    assert min(sizes) == pytest.approx(0.08 * max(sizes))

@@ -1,4 +1,4 @@
-"""Colors of loads: from green to red, and red beyond."""
+"""Colors of loads: from green over yellow to red."""
 
 from dynamics_node.visualization import colors
 import numpy as np
@@ -17,8 +17,8 @@ def test_over_the_limit_is_red(load):
     assert colors.of_load(load) == colors.OVER_THE_LIMIT
 
 
-def test_it_never_jumps_and_is_a_color():
-    found = np.array([colors.of_load(load) for load in np.linspace(0.0, 1.2, 500)])
-    assert np.abs(np.diff(found, axis=0)).max() < 0.11
-    assert found.min() >= 0.0 and found.max() <= 1.0
-    assert (found[:, 3] == 1.0).all()
+def test_colors_are_continuous_and_valid():
+    values = np.array([colors.of_load(load) for load in np.linspace(0.0, 1.2, 500)])
+    assert np.abs(np.diff(values, axis=0)).max() < 0.11
+    assert values.min() >= 0.0 and values.max() <= 1.0
+    assert (values[:, 3] == 1.0).all()

@@ -24,11 +24,11 @@ ROBOTS = {'arm7': ARM7, 'panda': public_robot('panda_description/urdf/panda.urdf
 
 
 def by_name(message):
-    """Return the markers of a message by name space and number; no two may have the same."""
+    """Return the markers of a message by name space and number, which are distinct."""
     added = [marker for marker in message.markers if marker.action == Marker.ADD]
-    found = {(marker.ns, marker.id): marker for marker in added}
-    assert len(found) == len(added)
-    return found
+    markers = {(marker.ns, marker.id): marker for marker in added}
+    assert len(markers) == len(added)
+    return markers
 
 
 def groups(received):
@@ -41,8 +41,8 @@ def place(marker):
     return position.x, position.y, position.z
 
 
-def assert_fit_to_be_shown(message):
-    """Demand what RViz demands of every marker."""
+def assert_valid(message):
+    """Assert RViz's conditions for markers."""
     for marker in by_name(message).values():
         o, s, c = marker.pose.orientation, marker.scale, marker.color
         numbers = [*place(marker), o.x, o.y, o.z, o.w, s.x, s.y, s.z, c.r, c.g, c.b, c.a]
@@ -53,7 +53,7 @@ def assert_fit_to_be_shown(message):
 
 
 def swept(marker):
-    """Return how far an arc goes around its joint, in parts of three quarters of a turn."""
+    """Return the signed angle of an arc, relative to three quarters of a turn."""
     angle = np.unwrap([math.atan2(point.y, point.x) for point in marker.points[:-3]])
     return (angle[-1] - angle[0]) / (1.5 * math.pi)
 
@@ -75,7 +75,7 @@ def axes_of(model, q):
 
 
 def log_lines(client):
-    """Return a list that grows by every line that a node logs."""
+    """Return a list that receives all lines of the log."""
     lines = []
     client.node.create_subscription(
         Log,
@@ -87,7 +87,7 @@ def log_lines(client):
 
 
 def until_complete(client, received, state):
-    """Wait until torques and efforts are shown, both of the same state."""
+    """Wait for torques and efforts of the same state."""
     client.until(
         lambda: (
             groups(received)
@@ -100,9 +100,9 @@ def until_complete(client, received, state):
 
 
 @pytest.mark.parametrize('name', ROBOTS)
-def test_the_picture_is_that_of_the_services(client, start, start_markers, name):
+def test_markers_agree_with_the_services(client, start, start_markers, name):
     model = RobotModel.from_urdf(ROBOTS[name])
-    # The description is a parameter of the dynamics node; no topic has it.
+    # The description is a parameter of the dynamics node, on no topic.
     start(robot_description_file=ROBOTS[name], state_timeout=1.0)
     start_markers()
     received = client.listen(MarkerArray, TOPIC)
@@ -115,7 +115,7 @@ def test_the_picture_is_that_of_the_services(client, start, start_markers, name)
     until_complete(client, received, state)
     answer = client.call(GetGravityTorque, '/dynamics_node/get_gravity_torque', action=state)
     assert answer.success
-    assert_fit_to_be_shown(received[-1])
+    assert_valid(received[-1])
     markers = by_name(received[-1])
     kinds = dict(zip(model.tree.moving_joint_names, model.tree.joint_type.tolist(), strict=True))
     axes = axes_of(model, q)
@@ -142,7 +142,7 @@ def test_the_picture_is_that_of_the_services(client, start, start_markers, name)
         assert abs(marker.header.stamp.sec - time.time()) < 60.0
 
 
-def test_without_a_subscriber_it_does_not_even_listen(client, start_markers):
+def test_without_a_subscriber_it_has_no_subscriptions(client, start_markers):
     start_markers()
     client.description.publish(String(data=PENDULUM.read_text()))
 
@@ -151,10 +151,10 @@ def test_without_a_subscriber_it_does_not_even_listen(client, start_markers):
 
     def listens():
         try:
-            found = client.node.get_subscriber_names_and_types_by_node('markers', '/')
+            topics = client.node.get_subscriber_names_and_types_by_node('markers', '/')
         except NodeNameNonExistentError:
             return None
-        return {'/joint_states', '/dynamics_node/gravity_torque'} & {name for name, _ in found}
+        return {'/joint_states', '/dynamics_node/gravity_torque'} & {topic for topic, _ in topics}
 
     client.until(lambda: client.node.count_publishers(TOPIC) and listens() == set(), state)
     received = []
@@ -169,11 +169,11 @@ def test_without_a_subscriber_it_does_not_even_listen(client, start_markers):
     client.node.create_subscription(MarkerArray, TOPIC, received.append, 10)
     client.until(lambda: received, state)
     assert received[0].markers[0].action == Marker.DELETEALL  # another RViz, perhaps
-    # Where joint_states has no effort, none is shown; without the node, no torque either.
+    # joint_states has no effort, and without the node there is no torque.
     assert groups(received) == {'center_of_mass', 'inertia'}
 
 
-def test_it_comes_at_a_rate_for_people_however_fast_the_states(client, start_markers):
+def test_the_rate_of_markers_is_limited(client, start_markers):
     start_markers()
     client.description.publish(String(data=PENDULUM.read_text()))
     times = []
@@ -188,7 +188,7 @@ def test_it_comes_at_a_rate_for_people_however_fast_the_states(client, start_mar
     times.clear()
     begun = time.monotonic()
     client.during(2.0, state, period=0.003)
-    # Ten may have waited in the queue of this process.
+    # Ten may have been in the queue of this process.
     assert 2 <= len(times) <= (time.monotonic() - begun) / 0.05 + 12
 
 
@@ -214,11 +214,11 @@ def test_without_the_dynamics_node_masses_are_drawn(client, start, start_markers
     expected = pendulum.link_pose([0.3], 'rod') @ [-0.35, 0.0, 0.0, 1.0]
     assert place(by_name(received[-1])['center_of_mass', 0]) == pytest.approx(expected[:3])
     assert received[-1].markers[0].header.frame_id == 'world'
-    # The node that appears has the same description, and adds what only it knows.
+    # The dynamics node has the same description; gravity and torques appear.
     node = start(state_timeout=1.0)
     client.until(lambda: groups(received) > {'gravity', 'gravity_torque', 'effort'}, hinge)
     client.until(lambda: f'drawing on {TOPIC} while it has a subscriber' in lines, hinge)
-    # Another description takes the old markers away at once.
+    # Another description removes the old markers at once.
     arm = RobotModel.from_urdf(ARM7)
     received.clear()
     client.description.publish(String(data=ARM7.read_text()))
@@ -234,7 +234,7 @@ def test_without_the_dynamics_node_masses_are_drawn(client, start, start_markers
         if marker.ns == 'torque_text'
     }
     assert names == set(arm.joint_names)
-    # Without the node there are masses again, and no torque that is out of date.
+    # Without the node only masses are left, without old torques.
     node.send(signal.SIGINT)
     node.wait(PATIENCE)
     client.until(
@@ -243,7 +243,7 @@ def test_without_the_dynamics_node_masses_are_drawn(client, start, start_markers
     )
 
 
-def test_a_description_that_is_refused_is_told_and_waited_on(client, start_markers):
+def test_a_refused_description_is_logged_and_the_next_one_awaited(client, start_markers):
     start_markers()
     received, lines = client.listen(MarkerArray, TOPIC), log_lines(client)
     for text in ('<robot name="broken"/>', '<robot name="broken"/>', PENDULUM.read_text()):
@@ -258,7 +258,7 @@ def test_a_description_that_is_refused_is_told_and_waited_on(client, start_marke
     assert len(refused) == 2 and 'refused, waiting for another one: ' in refused[0]
 
 
-def test_a_payload_comes_and_goes(client, start, start_markers):
+def test_a_payload_appears_and_disappears(client, start, start_markers):
     arm = RobotModel.from_urdf(ARM7)
     start(robot_description_file=ARM7, state_timeout=1.0)
     start_markers()
@@ -277,13 +277,13 @@ def test_a_payload_comes_and_goes(client, start, start_markers):
             state,
         ).success
         client.until(lambda mass=mass: bool(mass) == ('payload' in groups(received)), state)
-        assert_fit_to_be_shown(received[-1])
+        assert_valid(received[-1])
     loaded = [message for message in received if ('payload', 0) in by_name(message)]
     expected = arm.link_pose(arm.neutral_position, 'hand') @ [0.0, 0.0, 0.1, 1.0]
     assert place(by_name(loaded[-1])['payload', 0]) == pytest.approx(expected[:3], abs=1e-12)
 
 
-def test_parameters_are_read_anew_from_a_node_that_is_started_again(client, start, start_markers):
+def test_parameters_of_a_restarted_node_are_read_again(client, start, start_markers):
     first = start(robot_description_file=ARM7, state_timeout=1.0)
     start_markers()
     received = client.listen(MarkerArray, TOPIC)
@@ -293,7 +293,7 @@ def test_parameters_are_read_anew_from_a_node_that_is_started_again(client, star
         client.publish(arm.joint_names, arm.neutral_position)
 
     client.until(lambda: 'torque_text' in groups(received), state)
-    first.send(signal.SIGKILL)  # for some time, the graph still contains it
+    first.send(signal.SIGKILL)  # the graph contains it for some time
     first.wait(PATIENCE)
     start(
         **{
@@ -316,7 +316,7 @@ def test_parameters_are_read_anew_from_a_node_that_is_started_again(client, star
     assert by_name(received[-1])['torque_text', 0].text.startswith('wrist_roll: ')
 
 
-def test_names_are_those_of_its_namespace(client, start_markers):
+def test_topics_are_in_its_namespace(client, start_markers):
     start_markers('__ns:=/left', dynamics_node='arm_dynamics')
     client.node.create_publisher(String, '/left/robot_description', 1)
     topics = {'/left/arm_dynamics/markers'}
@@ -329,20 +329,15 @@ def test_names_are_those_of_its_namespace(client, start_markers):
     client.until(lambda: client.node.count_subscribers('/left/arm_dynamics/gravity_torque'))
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_it_with_exit_code_0(client, start_markers, number):
+# Two of them: from the terminal and from launch.
+@pytest.mark.parametrize(
+    'numbers', [[signal.SIGINT], [signal.SIGTERM], [signal.SIGINT, signal.SIGINT]]
+)
+def test_signals_end_it_with_exit_code_0(client, start_markers, numbers):
     markers = start_markers()
     client.until(lambda: client.node.count_publishers(TOPIC))
-    markers.send(number)
-    code, output = markers.wait(PATIENCE)
-    assert code == 0 and 'Traceback' not in output
-
-
-def test_two_signals_are_no_failure_either(client, start_markers):
-    markers = start_markers()
-    client.until(lambda: client.node.count_publishers(TOPIC))
-    markers.send(signal.SIGINT)  # of the terminal, and of launch
-    markers.send(signal.SIGINT)
+    for number in numbers:
+        markers.send(number)
     code, output = markers.wait(PATIENCE)
     assert code == 0 and 'Traceback' not in output
 

@@ -1,4 +1,4 @@
-"""What the markers program shows, in this process: the view, its messages and its callbacks."""
+"""The parts of the markers program: view, messages and callbacks."""
 
 from builtin_interfaces.msg import Time
 from dynamics_node import DynamicsError, RobotModel
@@ -36,10 +36,10 @@ def settings(**changes):
 
 def view(source=ARM7, **changes):
     """Return a view with settings and a torque at time 0."""
-    shown = RobotView(source)
-    shown.configure(settings(**changes))
-    shown.take_torque(shown.joint_names, [1.0] * len(shown.joint_names), 0.0)
-    return shown
+    view_of = RobotView(source)
+    view_of.configure(settings(**changes))
+    view_of.take_torque(view_of.joint_names, [1.0] * len(view_of.joint_names), 0.0)
+    return view_of
 
 
 def groups(shapes):
@@ -50,24 +50,24 @@ def texts(shapes):
     return [shape.text for shape in shapes if shape.group == 'torque_text']
 
 
-def test_without_settings_only_masses_are_known():
-    shown = RobotView(ARM7)
-    shown.take_torque(ARM.joint_names, [1.0] * 8, 0.0)
-    assert groups(shown.shapes(0.0)) == MASSES
-    shown.configure(SETTINGS)
-    assert groups(shown.shapes(0.0)) > MASSES | {'gravity', 'gravity_torque', 'torque_text'}
-    shown.configure(None)
-    assert groups(shown.shapes(0.0)) == MASSES
+def test_without_settings_only_masses_are_drawn():
+    view_of = RobotView(ARM7)
+    view_of.take_torque(ARM.joint_names, [1.0] * 8, 0.0)
+    assert groups(view_of.shapes(0.0)) == MASSES
+    view_of.configure(SETTINGS)
+    assert groups(view_of.shapes(0.0)) > MASSES | {'gravity', 'gravity_torque', 'torque_text'}
+    view_of.configure(None)
+    assert groups(view_of.shapes(0.0)) == MASSES
 
 
-def test_torques_are_taken_by_name_and_go_when_they_are_old():
-    shown = view(joints=['elbow_pitch', 'wrist_roll'])
-    shown.take_torque(['wrist_roll', 'shoulder_yaw', 'elbow_pitch'], [3.0, 1.0, 2.0], 10.0)
-    assert [text.split(' (')[0] for text in texts(shown.shapes(10.0 + TORQUE_TIMEOUT))] == [
+def test_torques_are_read_by_name_and_disappear_when_old():
+    view_of = view(joints=['elbow_pitch', 'wrist_roll'])
+    view_of.take_torque(['wrist_roll', 'shoulder_yaw', 'elbow_pitch'], [3.0, 1.0, 2.0], 10.0)
+    assert [text.split(' (')[0] for text in texts(view_of.shapes(10.0 + TORQUE_TIMEOUT))] == [
         'elbow_pitch: 2 N m',
         'wrist_roll: 3 N m',
     ]
-    assert groups(shown.shapes(10.1 + TORQUE_TIMEOUT)) == MASSES | {'gravity'}
+    assert groups(view_of.shapes(10.1 + TORQUE_TIMEOUT)) == MASSES | {'gravity'}
 
 
 @pytest.mark.parametrize(
@@ -79,30 +79,30 @@ def test_torques_are_taken_by_name_and_go_when_they_are_old():
     ],
     ids=['joint', 'length', 'nan'],
 )
-def test_a_torque_that_lacks_a_joint_is_not_shown(names, torque):
-    shown = view()
-    shown.take_torque(names, torque, 0.0)
-    assert not texts(shown.shapes(0.0))
+def test_an_incomplete_torque_is_not_drawn(names, torque):
+    view_of = view()
+    view_of.take_torque(names, torque, 0.0)
+    assert not texts(view_of.shapes(0.0))
 
 
 def test_gravity_that_changes_does_not_hide_the_torques():
-    shown = view()
-    shown.configure(settings(gravity=[9.81, 0.0, 0.0]))
-    assert shown.model.gravity.tolist() == [9.81, 0.0, 0.0]
-    assert len(texts(shown.shapes(0.0))) == 8
+    view_of = view()
+    view_of.configure(settings(gravity=[9.81, 0.0, 0.0]))
+    assert view_of.model.gravity.tolist() == [9.81, 0.0, 0.0]
+    assert len(texts(view_of.shapes(0.0))) == 8
 
 
 def test_states_are_merged_by_name():
-    shown = view()
-    assert not shown.has_new_state
-    shown.take_state(['gripper', 'elbow_pitch'], [9.0, 0.5], [])
-    shown.take_state(['wrist_roll', 'elbow_roll'], [-0.4, 0.0], [2.0, 0.0])
-    assert shown.has_new_state
+    view_of = view()
+    assert not view_of.has_new_state
+    view_of.take_state(['gripper', 'elbow_pitch'], [9.0, 0.5], [])
+    view_of.take_state(['wrist_roll', 'elbow_roll'], [-0.4, 0.0], [2.0, 0.0])
+    assert view_of.has_new_state
     q = ARM.neutral_position.copy()
     q[ARM.joint_names.index('elbow_pitch')] = 0.5
     q[ARM.joint_names.index('wrist_roll')] = -0.4
-    shapes = shown.shapes(0.0)
-    assert not shown.has_new_state
+    shapes = view_of.shapes(0.0)
+    assert not view_of.has_new_state
     [sphere] = [shape for shape in shapes if (shape.group, shape.number) == ('center_of_mass', 6)]
     inertia = ARM.tree.inertia[6]
     assert sphere.position == pytest.approx(
@@ -113,8 +113,8 @@ def test_states_are_merged_by_name():
     ]
 
 
-def test_an_effort_that_stops_coming_goes():
-    shown = view()
+def test_a_missing_effort_is_not_drawn():
+    view_of = view()
     for effort, count in (
         ([2.0], 1),
         ([np.inf], 0),
@@ -123,17 +123,17 @@ def test_an_effort_that_stops_coming_goes():
         ([2.0], 1),
         ([], 0),
     ):
-        shown.take_state(['wrist_roll'], [0.1], effort)
-        assert sum(shape.group == 'effort' for shape in shown.shapes(0.0)) == count
+        view_of.take_state(['wrist_roll'], [0.1], effort)
+        assert sum(shape.group == 'effort' for shape in view_of.shapes(0.0)) == count
 
 
 @pytest.mark.parametrize('position', [[np.nan], [np.inf], [0.1, 0.2], []])
-def test_a_position_that_cannot_be_is_passed_over(position):
-    shown = view(PENDULUM)
-    before = shown.shapes(0.0)
-    shown.take_state(['hinge'], position, [])
-    assert not shown.has_new_state
-    assert shown.shapes(0.0) == before
+def test_an_invalid_position_is_ignored(position):
+    view_of = view(PENDULUM)
+    before = view_of.shapes(0.0)
+    view_of.take_state(['hinge'], position, [])
+    assert not view_of.has_new_state
+    assert view_of.shapes(0.0) == before
 
 
 def test_the_limits_are_those_in_force():
@@ -152,23 +152,23 @@ def test_the_limits_are_those_in_force():
         ({'payload_link': 'hand', 'payload_mass': 1.0}, 'hand'),
     ],
 )
-def test_settings_of_another_robot_leave_the_masses(change, words):
-    shown = view(PENDULUM)
+def test_with_settings_of_another_robot_masses_are_drawn(change, words):
+    view_of = view(PENDULUM)
     with pytest.raises(DynamicsError, match=words):
-        shown.configure(settings(**change))
-    assert groups(shown.shapes(0.0)) == MASSES
+        view_of.configure(settings(**change))
+    assert groups(view_of.shapes(0.0)) == MASSES
 
 
 def test_a_payload_is_that_of_the_parameters():
-    shown = view(
+    view_of = view(
         payload_link='hand',
         payload_mass=2.0,
         payload_com=[0.0, 0.0, 0.1],
         payload_inertia=[0.1, 0.0, 0.0, 0.1, 0.0, 0.1],
     )
     expected = ARM.with_payload('hand', 2.0, (0.0, 0.0, 0.1), 0.1 * np.eye(3))
-    assert shown.model.payload.pseudo_inertia == pytest.approx(expected.payload.pseudo_inertia)
-    assert 'payload' in groups(shown.shapes(0.0))
+    assert view_of.model.payload.pseudo_inertia == pytest.approx(expected.payload.pseudo_inertia)
+    assert 'payload' in groups(view_of.shapes(0.0))
 
 
 @pytest.mark.parametrize('source', [b'<robot name="empty"/>', b'no xml', 'nowhere.urdf'])
@@ -177,7 +177,7 @@ def test_a_broken_description_is_refused(source):
         RobotView(source)
 
 
-def test_a_robot_that_does_not_move_is_refused():
+def test_a_robot_without_movable_joints_is_refused():
     with pytest.raises(DynamicsError, match='no joint that can be moved'):
         RobotView(b'<robot name="table"><link name="base"/></robot>')
 
@@ -185,13 +185,13 @@ def test_a_robot_that_does_not_move_is_refused():
 # Messages -------------------------------------------------------------------------------------
 
 
-def made(messages, shapes):
+def markers_of(messages, shapes):
     return messages.make(shapes, STAMP, 'base').markers
 
 
 def test_every_marker_can_be_replaced_and_vanishes_in_time():
     shapes = view().shapes(0.0)
-    first, *markers = made(MarkerMessages(), shapes)
+    first, *markers = markers_of(MarkerMessages(), shapes)
     assert first.action == Marker.DELETEALL and not first.ns
     assert len({(marker.ns, marker.id) for marker in markers}) == len(markers) == len(shapes)
     for marker in (first, *markers):
@@ -201,10 +201,10 @@ def test_every_marker_can_be_replaced_and_vanishes_in_time():
         assert marker.lifetime.sec == LIFETIME == 1 and marker.frame_locked
 
 
-def test_markers_go_when_the_set_of_shapes_changes():
+def test_all_markers_are_deleted_when_the_set_of_shapes_changes():
     messages, shapes = MarkerMessages(), view().shapes(0.0)
     actions = [
-        [marker.action for marker in made(messages, few)][:1]
+        [marker.action for marker in markers_of(messages, few)][:1]
         for few in (shapes, shapes, shapes[1:], shapes[1:], [], [])
     ]
     assert actions == [
@@ -217,14 +217,14 @@ def test_markers_go_when_the_set_of_shapes_changes():
     ]
 
 
-def test_a_marker_that_is_filled_anew_is_that_of_its_shape():
-    shown, messages = view(), MarkerMessages()
+def test_a_reused_marker_is_that_of_its_shape():
+    view_of, messages = view(), MarkerMessages()
     for q in (0.0, 0.3, 0.3, -0.5):
-        shown.take_state(ARM.joint_names[:7], [q] * 7, [10.0 * q] * 7)
-        shown.take_torque(ARM.joint_names, [3.0 * q] * 8, 0.0)
-        shapes = shown.shapes(0.0)
-        again = [marker for marker in made(messages, shapes) if marker.action == Marker.ADD]
-        assert again == made(MarkerMessages(), shapes)[1:]
+        view_of.take_state(ARM.joint_names[:7], [q] * 7, [10.0 * q] * 7)
+        view_of.take_torque(ARM.joint_names, [3.0 * q] * 8, 0.0)
+        shapes = view_of.shapes(0.0)
+        again = [marker for marker in markers_of(messages, shapes) if marker.action == Marker.ADD]
+        assert again == markers_of(MarkerMessages(), shapes)[1:]
 
 
 def test_a_shape_is_translated_completely():
@@ -239,7 +239,7 @@ def test_a_shape_is_translated_completely():
         ((4.0, 5.0, 6.0), (7.0, 8.0, 9.0)),
         'words',
     )
-    [_, marker] = made(MarkerMessages(), [shape])
+    [_, marker] = markers_of(MarkerMessages(), [shape])
     p, o, s, c = marker.pose.position, marker.pose.orientation, marker.scale, marker.color
     assert (marker.ns, marker.id, marker.type, marker.text) == (
         'group',
@@ -255,7 +255,7 @@ def test_a_shape_is_translated_completely():
 # Callbacks ------------------------------------------------------------------------------------
 
 
-def test_a_limited_group_takes_the_newest_messages_and_no_more(client):
+def test_a_limited_group_runs_for_the_newest_messages_only(client):
     group, received = LimitedGroup(), []
     client.node.create_subscription(String, 'words', received.append, 2, callback_group=group)
     publisher = client.node.create_publisher(String, 'words', 10)
@@ -291,7 +291,7 @@ class Failing:
         raise KeyError('other')
 
 
-def test_errors_are_logged_once_in_a_while_for_each_callback(client, capfd):
+def test_errors_of_each_callback_are_logged_with_a_throttle(client, capfd):
     failing = Failing(client.node.get_logger())
     assert failing.on_message(2.0) == 0.5
     for _ in range(20):

@@ -1,4 +1,4 @@
-"""The whole picture: never a number that RViz refuses, gravity, payload, torques or none."""
+"""Complete pictures: valid for RViz, gravity, payload, with and without torques."""
 
 from dynamics_node import RobotModel
 from dynamics_node.visualization import ARROW, Picture
@@ -11,8 +11,8 @@ from support.robots import ARM7, PENDULUM, public_robot, public_robots, random_u
 SHAPES = {'sphere', 'box', 'disc', 'line', 'arrow', 'text'}
 
 
-def assert_fit_to_be_shown(shapes):
-    """Demand what RViz demands, and that no two have the same name."""
+def assert_valid(shapes):
+    """Assert RViz's conditions, and distinct names."""
     names = [(shape.group, shape.number) for shape in shapes]
     assert len(set(names)) == len(names)
     for shape in shapes:
@@ -38,6 +38,14 @@ def picture_of(robot, q, effort, limits):
     )
 
 
+def at_rest(source, gravity=(0.0, 0.0, -9.81)):
+    """Return the shapes of a robot in neutral position, without efforts, and its arrow."""
+    robot = RobotModel.from_urdf(source).with_gravity(gravity)
+    q = robot.neutral_position
+    shapes = picture_of(robot, q, np.zeros(len(q)), robot.effort_limits)
+    return shapes, next((shape for shape in shapes if shape.kind == ARROW), None)
+
+
 @settings(max_examples=60)
 @given(
     seed=st.integers(0, 10_000),
@@ -46,7 +54,7 @@ def picture_of(robot, q, effort, limits):
     gravity=st.sampled_from([0.0, 1e-9, 9.81]),
     payload=st.sampled_from([0.0, 1e-9, 1.0, 1e5]),
 )
-def test_no_random_robot_makes_a_picture_that_rviz_refuses(seed, scale, load, gravity, payload):
+def test_pictures_of_random_robots_are_valid(seed, scale, load, gravity, payload):
     robot = RobotModel.from_urdf(random_urdf(seed, mass_scale=scale)).with_gravity(
         (0.0, 0.6 * gravity, -0.8 * gravity)
     )
@@ -57,11 +65,11 @@ def test_no_random_robot_makes_a_picture_that_rviz_refuses(seed, scale, load, gr
     q = rng.normal(0.0, 10.0 ** rng.uniform(-3, 3), n)
     effort = np.where(rng.random(n) < 0.3, np.nan, rng.normal(size=n) * load)
     limits = np.where(rng.random(n) < 0.5, np.nan, rng.random(n) * load)
-    assert_fit_to_be_shown(picture_of(robot, q, effort, limits))
+    assert_valid(picture_of(robot, q, effort, limits))
 
 
 @pytest.mark.parametrize('name', public_robots()[::4])
-def test_public_robots(name):
+def test_pictures_of_public_robots_are_valid(name):
     try:
         robot = RobotModel.from_urdf(public_robot(name))
     except ValueError:
@@ -69,10 +77,10 @@ def test_public_robots(name):
     if not robot.joint_names:
         pytest.skip('no joint that can be moved')
     q = robot.neutral_position
-    assert_fit_to_be_shown(picture_of(robot, q, np.ones(len(q)), robot.effort_limits))
+    assert_valid(picture_of(robot, q, np.ones(len(q)), robot.effort_limits))
 
 
-def test_nothing_is_drawn_of_a_robot_at_no_place():
+def test_a_position_that_is_not_finite_has_no_picture():
     robot = RobotModel.from_urdf(PENDULUM)
     picture = Picture(robot.tree, robot.joint_names)
     nothing = np.array([np.nan])
@@ -80,27 +88,19 @@ def test_nothing_is_drawn_of_a_robot_at_no_place():
 
 
 @pytest.mark.parametrize('gravity', [(0.0, 0.0, -9.81), (0.0, 9.81, 0.0), (3.0, -1.0, -2.0)])
-def test_gravity_points_where_things_fall(gravity):
-    robot = RobotModel.from_urdf(ARM7).with_gravity(gravity)
-    shapes = picture_of(robot, robot.neutral_position, np.zeros(8), robot.effort_limits)
-    [arrow] = [shape for shape in shapes if shape.kind == ARROW]
+def test_the_arrow_of_gravity_has_its_direction_and_size(gravity):
+    shapes, arrow = at_rest(ARM7, gravity)
     vector = np.subtract(arrow.points[1], arrow.points[0])
     size = np.linalg.norm(gravity)
     assert vector / np.linalg.norm(vector) == pytest.approx(np.array(gravity) / size)
-    whole = RobotModel.from_urdf(ARM7)
-    [earth] = [
-        shape
-        for shape in picture_of(whole, whole.neutral_position, np.zeros(8), whole.effort_limits)
-        if shape.kind == ARROW
-    ]
+    _, earth = at_rest(ARM7)
     assert np.linalg.norm(vector) / np.linalg.norm(earth.points[1]) == pytest.approx(size / 9.81)
     [text] = [shape.text for shape in shapes if (shape.group, shape.number) == ('gravity', 1)]
     assert text == f'{size:.3g} m/s^2'
 
 
 def test_without_gravity_there_is_no_arrow():
-    robot = RobotModel.from_urdf(ARM7).with_gravity((0.0, 0.0, 0.0))
-    shapes = picture_of(robot, robot.neutral_position, np.zeros(8), robot.effort_limits)
+    shapes, _ = at_rest(ARM7, (0.0, 0.0, 0.0))
     assert shapes and 'gravity' not in {shape.group for shape in shapes}
 
 
@@ -120,34 +120,26 @@ def test_without_a_torque_neither_torques_nor_efforts_are_drawn():
     }
 
 
-def arrow_of(gravity):
-    """Return the arrow of gravity of the pendulum, and how long the pendulum is."""
-    robot = RobotModel.from_urdf(PENDULUM).with_gravity(gravity)
-    [arrow] = [
-        shape
-        for shape in picture_of(robot, np.zeros(1), np.zeros(1), robot.effort_limits)
-        if shape.kind == ARROW
-    ]
-    return arrow, 0.35
+REACH = 0.35  # m, of the pendulum
 
 
 @pytest.mark.parametrize(('strength', 'times'), [(9.81, 1.0), (1.62, 1.62 / 9.81), (1000.0, 2.0)])
 def test_the_arrow_of_gravity_is_never_longer_than_twice_that_of_the_earth(strength, times):
-    arrow, reach = arrow_of((0.0, 0.0, -strength))
-    assert np.linalg.norm(arrow.points[1]) == pytest.approx(0.2 * reach * times)
+    _, arrow = at_rest(PENDULUM, (0.0, 0.0, -strength))
+    assert np.linalg.norm(arrow.points[1]) == pytest.approx(0.2 * REACH * times)
 
 
 @pytest.mark.parametrize('gravity', [(0.0, 0.0, -9.81), (9.81, 0.0, 0.0)])
 def test_the_arrow_of_gravity_stands_beside_the_base_and_above_it(gravity):
-    arrow, reach = arrow_of(gravity)
+    _, arrow = at_rest(PENDULUM, gravity)
     down = np.array(gravity) / 9.81
     end = np.add(arrow.position, arrow.points[1])
     beside = end - (end @ down) * down
-    assert np.linalg.norm(beside) == pytest.approx(0.2 * reach)
+    assert np.linalg.norm(beside) == pytest.approx(0.2 * REACH)
     assert end @ down == pytest.approx(0.0, abs=1e-12)
 
 
-def test_another_payload_takes_the_place_of_the_one_before():
+def test_another_payload_replaces_the_previous_one():
     robot = RobotModel.from_urdf(ARM7)
     picture = Picture(robot.tree, robot.joint_names)
 

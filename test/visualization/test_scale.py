@@ -1,10 +1,10 @@
-"""Sizes follow the robot's own."""
+"""Sizes of shapes are proportional to the robot."""
 
 import dataclasses
 import re
 
 from dynamics_node import RobotModel
-from dynamics_node.visualization.scale import ARC, arc_radii, make_sizes, reach
+from dynamics_node.visualization.scale import ARC, arc_radii, make_scale, reach
 import numpy as np
 import pytest
 from support.robots import ARM7, PENDULUM, public_robot
@@ -31,24 +31,23 @@ def test_the_reach_of_the_pendulum_is_its_length_to_the_center_of_mass():
     assert reach(RobotModel.from_urdf(PENDULUM).tree) == pytest.approx(0.35)
 
 
-def test_the_reach_of_known_arms_is_about_what_their_makers_say():
-    # 0.85 m from shoulder to wrist, and what is behind: offsets count in full.
-    assert (
-        1.0
-        < reach(RobotModel.from_urdf(public_robot('ur_description/urdf/ur5_robot.urdf')).tree)
-        < 1.6
-    )
-    assert (
-        0.3
-        < reach(RobotModel.from_urdf(public_robot('so_arm_description/urdf/so101.urdf')).tree)
-        < 0.6
-    )
+# UR5: 0.85 m from shoulder to wrist; offsets count in full.
+@pytest.mark.parametrize(
+    ('name', 'low', 'high'),
+    [
+        ('ur_description/urdf/ur5_robot.urdf', 1.0, 1.6),
+        ('so_arm_description/urdf/so101.urdf', 0.3, 0.6),
+    ],
+)
+def test_the_reach_of_known_arms_is_about_that_of_their_data_sheets(name, low, high):
+    path = public_robot(name)
+    assert low < reach(RobotModel.from_urdf(path).tree) < high
 
 
 @pytest.mark.parametrize('factor', [0.01, 7.0])
 def test_a_robot_of_another_size_has_the_same_picture(factor):
     one, other = (
-        make_sizes(without_travel(RobotModel.from_urdf(text).tree))
+        make_scale(without_travel(RobotModel.from_urdf(text).tree))
         for text in (ARM7.read_text(), scaled(ARM7.read_text(), factor))
     )
     assert other.reach == pytest.approx(factor * one.reach)
@@ -56,7 +55,7 @@ def test_a_robot_of_another_size_has_the_same_picture(factor):
     assert other.heaviest == one.heaviest
 
 
-def test_rails_count():
+def test_the_reach_contains_the_travel_of_a_rail():
     urdf = (
         '<robot name="r"><link name="a"/><link name="b"><inertial><mass value="1"/><inertia '
         'ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="j" '
@@ -64,11 +63,7 @@ def test_rails_count():
         'lower="-1" upper="2" effort="1" velocity="1"/></joint></robot>'
     )
     assert reach(RobotModel.from_urdf(urdf).tree) == pytest.approx(3.0)
-    endless = (
-        urdf.replace('lower="-1" upper="2"', '')
-        .replace('prismatic', 'revolute')
-        .replace('revolute', 'continuous')
-    )
+    endless = urdf.replace('lower="-1" upper="2"', '').replace('prismatic', 'continuous')
     assert reach(RobotModel.from_urdf(endless).tree) == 1.0  # without any length
 
 

@@ -1,37 +1,8 @@
-"""Quaternions and frames, against MuJoCo's."""
+"""Frames around joint axes."""
 
-from dynamics_node.visualization.shapes import frame_around, quaternions
-import mujoco
+from dynamics_node.visualization.shapes import frame_around
 import numpy as np
 import pytest
-
-
-def matrix(quaternion):
-    """Return the rotation of a quaternion x, y, z, w, by MuJoCo."""
-    found = np.zeros(9)
-    x, y, z, w = quaternion
-    mujoco.mju_quat2Mat(found, np.array([w, x, y, z]))
-    return found.reshape(3, 3)
-
-
-def rotations():
-    rng = np.random.default_rng(3)
-    some = [np.eye(3), np.diag([1.0, -1, -1]), np.diag([-1.0, 1, -1]), np.diag([-1.0, -1, 1])]
-    for _ in range(50):
-        Q = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-        some.append(Q * np.linalg.det(Q))
-    return np.array(some)
-
-
-def test_quaternions_turn_as_the_matrices_do():
-    found = quaternions(rotations())
-    assert np.linalg.norm(found, axis=1) == pytest.approx(1.0, abs=1e-15)
-    for quaternion, R in zip(found, rotations(), strict=True):
-        assert matrix(quaternion) == pytest.approx(R, abs=1e-14)
-
-
-def test_none_gives_none():
-    assert quaternions(np.zeros((0, 3, 3))).shape == (0, 4)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Arcs and arrows of torques: which way, how far, in which color."""
+"""Arcs and arrows of torques: axis, direction, length, color and text."""
 
 import math
 
@@ -23,9 +23,9 @@ def drawn(robot, q, torque, effort=None, limits=None, names=None):
         nothing if effort is None else effort,
         nothing if limits is None else np.asarray(limits, dtype=float),
     )
-    found = {(shape.group, shape.number): shape for shape in shapes}
-    assert len(found) == len(shapes)
-    return found
+    by_name = {(shape.group, shape.number): shape for shape in shapes}
+    assert len(by_name) == len(shapes)
+    return by_name
 
 
 def rotation(shape):
@@ -34,8 +34,8 @@ def rotation(shape):
 
 
 def swept(shape):
-    """Return the angle that an arc sweeps about its z axis, degrees, with its sign."""
-    arc = np.array(shape.points[:-3])  # behind it come a barb, the tip again and a barb
+    """Return the signed angle of an arc about its z axis, degrees."""
+    arc = np.array(shape.points[:-3])  # then a barb, the tip and a barb
     assert shape.points[-2] == shape.points[-4]
     assert np.ptp(np.linalg.norm(arc, axis=1)) < 1e-12 and not arc[:, 2].any()
     angle = np.unwrap(np.arctan2(arc[:, 1], arc[:, 0]))
@@ -52,7 +52,7 @@ def swept(shape):
     ],
     ids=['arm7', 'panda', 'random 3', 'random 5'],
 )
-def test_axes_are_those_that_a_small_motion_turns_about(source):
+def test_axes_are_those_of_small_motions(source):
     robot = RobotModel.from_urdf(source)
     n = len(robot.joint_names)
     q, _ = random_state(np.random.default_rng(4), robot)
@@ -96,7 +96,7 @@ def test_the_limit_is_three_quarters_of_a_turn(load, sign):
         assert torque.kind == effort.kind == LINE
 
 
-def test_an_arc_never_closes_and_nothing_is_not_nothing():
+def test_an_arc_never_closes_and_never_vanishes():
     robot = RobotModel.from_urdf(public_robot('ur_description/urdf/ur5_robot.urdf'))
     n = len(robot.joint_names)
     for torque, expected in ((1e9, 351.0), (-1e9, -351.0), (0.0, 0.573)):
@@ -107,7 +107,7 @@ def test_an_arc_never_closes_and_nothing_is_not_nothing():
 
 
 @pytest.mark.parametrize('limits', [np.nan, 0.0, np.inf])
-def test_without_limits_they_are_grey_and_compared_with_the_largest(limits):
+def test_without_limits_arcs_are_grey_and_relative_to_the_largest(limits):
     robot = RobotModel.from_urdf(public_robot('ur_description/urdf/ur5_robot.urdf'))
     torque = np.array([1.0, -4.0, 2.0, 0.0, 0.5, 0.0])
     shapes = drawn(robot, np.zeros(6), torque, None, np.full(6, limits))
@@ -119,7 +119,7 @@ def test_without_limits_they_are_grey_and_compared_with_the_largest(limits):
         assert shapes['torque_text', i].text == f'{robot.joint_names[i]}: {value:g} N m'
 
 
-def test_what_is_not_known_is_not_drawn():
+def test_unknown_efforts_are_not_drawn():
     robot = RobotModel.from_urdf(ARM7)
     n = len(robot.joint_names)
     effort = np.full(n, np.nan)
@@ -128,7 +128,7 @@ def test_what_is_not_known_is_not_drawn():
     assert [number for group, number in shapes if group == 'effort'] == [2]
 
 
-def test_texts_say_the_gravity_torque_and_its_part_of_the_limit():
+def test_texts_contain_the_gravity_torque_and_its_share_of_the_limit():
     robot = RobotModel.from_urdf(ARM7)
     n = len(robot.joint_names)
     torque = np.array([12.345, -4.5, 1e-17, 0.0, -1e-17, 30.0, 0.1, 2.5])
@@ -148,7 +148,7 @@ def test_texts_say_the_gravity_torque_and_its_part_of_the_limit():
     assert all(text.kind == TEXT for text in texts)
 
 
-def test_an_arc_begins_where_it_began_however_the_joint_turns():
+def test_the_start_of_an_arc_does_not_turn_with_its_joint():
     robot = RobotModel.from_urdf(ARM7)
     n, turned = len(robot.joint_names), robot.neutral_position
     turned[1] += 1.0
@@ -166,7 +166,7 @@ def test_only_the_chosen_joints_have_torques_in_their_order():
     assert texts == [f'{chosen[0]}: 1 N m (10 %)', f'{chosen[1]}: 2 N m (20 %)']
 
 
-def test_texts_of_joints_at_one_place_are_in_lines():
+def test_texts_of_coincident_joints_are_stacked():
     robot = RobotModel.from_urdf(public_robot('panda_description/urdf/panda.urdf'))
     n = len(robot.joint_names)
     shapes = drawn(robot, robot.neutral_position, np.ones(n))
@@ -177,7 +177,7 @@ def test_texts_of_joints_at_one_place_are_in_lines():
             assert apart.max() > 1.2 * text.size[2], (text.text, other.text)
 
 
-def test_without_limits_forces_and_torques_are_each_compared_with_their_own_kind():
+def test_without_limits_forces_and_torques_are_scaled_separately():
     robot = RobotModel.from_urdf(ARM7)
     torque = np.array([2.0, -8.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1000.0])  # the last one slides
     shapes = drawn(robot, robot.neutral_position, torque)

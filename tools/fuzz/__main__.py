@@ -19,7 +19,7 @@ _FOLDER = Path(__file__).parents[2] / 'log' / 'fuzz'
 
 
 class _NothingLogged(logging.Handler):
-    """A library that logs has met what it should never have been given."""
+    """Raises at every log line: it means that a library received invalid input."""
 
     def handle(self, record):
         raise AssertionError(f'{record.name} logs: {record.getMessage()}')
@@ -27,12 +27,12 @@ class _NothingLogged(logging.Handler):
 
 def main(arguments=None):
     """
-    Run the campaigns, or one input again.
+    Run the campaigns, or repeat one input.
 
     Returns
     -------
     int
-        Exit code: 1 if something was found.
+        Exit code: 1 if there are findings.
 
     """
     parser = argparse.ArgumentParser(prog='python -m fuzz', description=__doc__)
@@ -45,17 +45,14 @@ def main(arguments=None):
     parser.add_argument(
         '--seed',
         type=int,
-        help='draw what this seed draws (default: 0 where CI '
-        'is set, otherwise another in every run)',
+        help='seed of the inputs (default: 0 where CI is set, otherwise another in every run)',
     )
-    parser.add_argument(
-        '--replay', type=Path, metavar='FILE', help='put only this input through its target'
-    )
+    parser.add_argument('--replay', type=Path, metavar='FILE', help='only repeat this input')
     parser.add_argument(
         '--folder',
         type=Path,
         default=_FOLDER,
-        help='where inputs that find something are written (default: log/fuzz)',
+        help='folder for the inputs of findings (default: log/fuzz)',
     )
     options = parser.parse_args(arguments)
     if options.inputs < len(_TARGETS):
@@ -67,7 +64,9 @@ def main(arguments=None):
     if seed is None:
         seed = 0 if os.environ.get('CI') else random.SystemRandom().randrange(10**6)
     results = [
-        Campaign(target, options.folder).run(options.inputs // len(_TARGETS), seed, _say)
+        Campaign(target, options.folder).run(
+            options.inputs // len(_TARGETS), seed, _print_progress
+        )
         for target in _TARGETS
     ]
     print_results(Console(), results, seed)
@@ -75,11 +74,11 @@ def main(arguments=None):
 
 
 def be_strict():
-    """Let no line in a log pass, and no other process be started."""
-    # Machine code of its own for every robot would be compiled in another process.
+    """Raise at log lines, and do not start other processes."""
+    # Code for one robot is compiled in another process.
     os.environ['DYNAMICS_NODE_SPECIALIZE'] = '0'
     logging.getLogger().addHandler(_NothingLogged())
-    # A file of its own: standard error is somewhere else while rclpy may print.
+    # A duplicate: standard error is redirected while rclpy may print.
     faulthandler.enable(os.dup(2))
 
 
@@ -97,7 +96,7 @@ def _replay(path):
     return 0
 
 
-def _say(text):
+def _print_progress(text):
     print(text, file=sys.stderr, flush=True)
 
 

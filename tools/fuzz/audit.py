@@ -1,4 +1,4 @@
-"""Sees to it that no file, socket or process is opened while an input is looked at."""
+"""Forbids opening files, sockets and processes while an input is processed."""
 
 from contextlib import contextmanager
 import sys
@@ -23,11 +23,11 @@ _FORBIDDEN = (
 
 
 class OpenedError(Exception):
-    """Something was opened, loaded or started."""
+    """A file, socket, module or process was opened."""
 
 
 class _Watch:
-    """An audit hook, which can never be removed: it does nothing while it is off."""
+    """An audit hook. It cannot be removed, only switched off."""
 
     is_on = False
     is_hooked = False
@@ -46,9 +46,9 @@ _watch = _Watch()
 @contextmanager
 def nothing_opened():
     """
-    Raise OpenedError where something inside is opened.
+    Raise OpenedError if the code inside opens a file, socket or process.
 
-    An import counts too: what is loaded lazily must be loaded before.
+    Imports count, too: lazy modules have to be loaded before.
 
     """
     if not _watch.is_hooked:
@@ -59,6 +59,6 @@ def nothing_opened():
         yield
     finally:
         _watch.is_on = False
-        # Also where somebody has caught it.
+        # Also if the code inside has caught it.
         if _watch.seen:
             raise OpenedError(_watch.seen)

@@ -1,4 +1,4 @@
-"""Thousands of inputs through one target: what came of them, how long they took, what memory."""
+"""`Campaign`: thousands of inputs for one target; answers, time, memory and findings."""
 
 from collections import Counter
 from contextlib import contextmanager
@@ -18,26 +18,26 @@ from hypothesis import seed as seeded
 
 from .seeds import SIBLINGS
 
-# Seconds of processor time that one input may take; by the clock it takes longer where other
-# processes want the processor. Seconds by the clock after which it is given up.
+# Largest processor time of one input, s.
 MAX_TIME = 1.0
+# Time by the clock after which an input is given up, s.
 _HANGS = 20.0
-# MB that the process may have grown between the first tenth of the inputs and the end.
+# Largest growth of memory between the first tenth of the inputs and the end, MB.
 MAX_GROWTH = 32.0
-# Hypothesis remembers what it has tried: a fresh start every so many inputs keeps that small.
-_AT_ONCE = 500
-# Also of the same finding, found again in other inputs.
-_ENOUGH_FINDINGS = 10
+# Inputs per run of hypothesis, which keeps all of them in memory.
+_BATCH = 500
+# Findings that end a campaign, repeated ones included.
+_MAX_FAILURES = 10
 _PAGE = os.sysconf('SC_PAGE_SIZE')
 
 
 class SlowError(Exception):
-    """An input took longer than any may."""
+    """An input took too long."""
 
 
 @dataclass
 class Finding:
-    """What went wrong, and the input that does it again."""
+    """An error, and the input that reproduces it."""
 
     error: str
     where: str
@@ -50,8 +50,8 @@ class Result:
     """
     The figures of one target.
 
-    Times are seconds: of the processor, and by the clock. Memory is resident, in MB: after the
-    first tenth of the inputs, at the end, and at most.
+    Times in s: `slowest` of the processor, `longest` by the clock. Resident memory in MB: after
+    the first tenth of the inputs, at the end, and its peak.
 
     """
 
@@ -70,25 +70,25 @@ class Result:
 
 
 class Campaign:
-    """One target and the inputs that went through it."""
+    """Runs inputs through one target."""
 
     def __init__(self, target, folder):
         """
-        Warm up, so that what is loaded once is not taken for a growth of memory.
+        Warm up: lazy imports are no growth of memory.
 
         Parameters
         ----------
         target : module
             `description_target` or `joint_state_target`.
         folder : pathlib.Path
-            Where findings are written.
+            Folder for the findings.
 
         """
         self.target = target
         self.result = Result(target.NAME)
         self._folder = folder
         folder.mkdir(parents=True, exist_ok=True)
-        # Whatever ends the process leaves its input here.
+        # An input that crashes the process stays here.
         self._running = folder / f'running{target.SUFFIX}'
         self._file = os.open(self._running, os.O_WRONLY | os.O_CREAT)
         self._failing = None
@@ -96,15 +96,15 @@ class Campaign:
 
     def run(self, inputs, seed, say=lambda text: None):
         """
-        Put inputs through the target.
+        Run inputs through the target.
 
         Parameters
         ----------
         inputs : int
         seed : int
-            The same seed draws the same inputs.
+            Seed of the inputs.
         say : callable(str)
-            Takes a line about the progress.
+            Prints a line about the progress.
 
         Returns
         -------
@@ -112,10 +112,10 @@ class Campaign:
 
         """
         result, start = self.result, time.monotonic()
-        while result.inputs < inputs and result.failures < _ENOUGH_FINDINGS:
+        while result.inputs < inputs and result.failures < _MAX_FAILURES:
             tenth = result.inputs * 10 // inputs
-            self._some(
-                min(_AT_ONCE, inputs - result.inputs, max(1, inputs // 10)), seed + result.inputs
+            self._run_batch(
+                min(_BATCH, inputs - result.inputs, max(1, inputs // 10)), seed + result.inputs
             )
             if not result.early_memory and result.inputs * 10 >= inputs:
                 result.early_memory = memory()
@@ -127,7 +127,7 @@ class Campaign:
         result.late_memory = memory()
         result.peak_memory = _peak_memory()
         if result.early_memory and result.late_memory > result.early_memory + MAX_GROWTH:
-            self._found(
+            self._add_finding(
                 'memory',
                 f'MemoryError: from {result.early_memory:.0f} to {result.late_memory:.0f} MB',
                 b'',
@@ -138,7 +138,7 @@ class Campaign:
         return result
 
     def take(self, data):
-        """Put one input through the target; what is found is raised."""
+        """Run one input through the target; findings are raised."""
         content = self.target.to_bytes(data)
         os.ftruncate(self._file, 0)
         os.pwrite(self._file, content, 0)
@@ -150,22 +150,22 @@ class Campaign:
                 result.answers.update(self.target.check(data))
         except SlowError:
             result.answers['given up'] += 1
-            self._found('hangs', f'SlowError: no answer within {_HANGS:g} s', content)
+            self._add_finding('hangs', f'SlowError: no answer within {_HANGS:g} s', content)
         used, duration = time.process_time() - used, time.monotonic() - start
         result.inputs += 1
         result.longest = max(result.longest, duration)
         if used > result.slowest:
             result.slowest, result.slowest_size = used, len(content)
         if used > MAX_TIME:
-            self._found('slow', f'SlowError: {used:.1f} s', content)
+            self._add_finding('slow', f'SlowError: {used:.1f} s', content)
 
-    def _some(self, count, seed):
-        # What hypothesis finds it makes smaller; the last input that fails is the smallest.
+    def _run_batch(self, count, seed):
+        # Hypothesis shrinks a finding; the last failing input is the smallest.
         before = self.result.inputs
 
         def examine(drawn):
             for data in drawn:
-                # Enough, unless hypothesis is making an input smaller.
+                # Enough, unless hypothesis is shrinking an input.
                 if self._failing is None and self.result.inputs >= before + count:
                     return
                 try:
@@ -189,18 +189,18 @@ class Campaign:
         except Exception as error:
             if self._failing is None:
                 raise
-            wrong, data = self._failing
-            # An input that fails now and then is a finding too, and hypothesis says so.
-            self._found(
-                _place(wrong),
-                f'{type(wrong).__name__}: {wrong}'
-                + ('' if error is wrong else f' ({type(error).__name__})'),
+            failure, data = self._failing
+            # Hypothesis raises another error for an input that fails only sometimes.
+            self._add_finding(
+                _place(failure),
+                f'{type(failure).__name__}: {failure}'
+                + ('' if error is failure else f' ({type(error).__name__})'),
                 self.target.to_bytes(data),
             )
-        # Even if nothing new could be drawn.
+        # Also if hypothesis could draw no new input.
         self.result.inputs = max(self.result.inputs, before + 1)
 
-    def _found(self, where, error, content):
+    def _add_finding(self, where, error, content):
         findings = self.result.findings
         self.result.failures += 1
         if where in findings:
@@ -216,7 +216,7 @@ class Campaign:
 def memory():
     """Return the resident memory of this process, MB."""
     gc.collect()
-    # What was freed, but is kept by the C library, is no growth.
+    # Freed memory that the C library keeps is no growth.
     ctypes.CDLL(None).malloc_trim(0)
     return int(Path('/proc/self/statm').read_text().split()[1]) * _PAGE / 1e6
 
@@ -226,20 +226,20 @@ def _peak_memory():
 
 
 def _place(error):
-    """Return where an exception comes from: the innermost file and line, and its type."""
+    """Return innermost file and line of an exception, and its type."""
     frame = traceback.extract_tb(error.__traceback__)[-1]
     return f'{Path(frame.filename).name}:{frame.lineno} {type(error).__name__}'
 
 
 @contextmanager
 def _alarm():
-    """Raise SlowError where the code inside hangs."""
+    """Raise SlowError if the code inside hangs."""
 
     def ring(*_):
         raise SlowError
 
     before = signal.signal(signal.SIGALRM, ring)
-    # Somebody else may use the timer to end a test.
+    # pytest-timeout may use the same timer.
     remaining, interval = signal.setitimer(signal.ITIMER_REAL, _HANGS)
     try:
         yield

@@ -1,20 +1,20 @@
-"""Where lines go that C code prints, past Python's own standard error."""
+"""Redirection of standard error, also of C code."""
 
 from contextlib import contextmanager
 import os
 
 NOWHERE = os.open(os.devnull, os.O_WRONLY)
 _STDERR = 2
-_seen = os.memfd_create('printed')
+_captured = os.memfd_create('printed')
 
 
 class PrintedError(Exception):
-    """Something was printed that nobody throttles."""
+    """Code printed to standard error, without a throttle."""
 
 
 @contextmanager
 def stderr_to(file):
-    """Send what is printed inside to another file descriptor."""
+    """Redirect standard error of the code inside to another file descriptor."""
     usual = os.dup(_STDERR)
     os.dup2(file, _STDERR)
     try:
@@ -26,12 +26,12 @@ def stderr_to(file):
 
 @contextmanager
 def nothing_printed():
-    """Raise PrintedError if something inside prints to standard error."""
-    before = os.lseek(_seen, 0, os.SEEK_END)
+    """Raise PrintedError if the code inside prints to standard error."""
+    before = os.lseek(_captured, 0, os.SEEK_END)
     try:
-        with stderr_to(_seen):
+        with stderr_to(_captured):
             yield
     finally:
-        text = os.pread(_seen, 200, before)
+        text = os.pread(_captured, 200, before)
         if text:
             raise PrintedError(text.decode(errors='replace'))

@@ -1,4 +1,4 @@
-"""Joint states as bytes on the wire, written by hand so that every count can lie."""
+"""Serialized joint states in which any count can be false."""
 
 import struct
 
@@ -24,20 +24,20 @@ _LIES = (
 
 
 class _Writer:
-    """Appends values with CDR's alignment; `lie` is the index of a count and what it says."""
+    """Appends values with CDR's alignment; `lie` is (index of a count, its false value)."""
 
     def __init__(self, lie):
         self.data = bytearray(b'\x00\x01\x00\x00')
         self._lie, self._counts = lie, 0
 
     def number(self, form, value):
-        # The representation in front is no part of the alignment.
+        # The alignment begins after the representation.
         self.data += bytes((4 - len(self.data)) % struct.calcsize(form))
         self.data += struct.pack('<' + form, value)
 
     def count(self, value):
-        at, said = self._lie
-        self.number('I', said if at == self._counts else value)
+        at, false_value = self._lie
+        self.number('I', false_value if at == self._counts else value)
         self._counts += 1
 
     def text(self, data):
@@ -59,13 +59,13 @@ def joint_state(stamp, frame, names, sequences, lie=(-1, 0)):
     ----------
     stamp : (int, int)
     frame : bytes
-        With the zero at its end.
+        With a terminating zero.
     names : list of bytes
-        The same.
+        Each with a terminating zero.
     sequences : three lists of float
         Positions, velocities, efforts.
     lie : (int, int)
-        Which of the counts, in their order, is not true, and what it says.
+        Index of a count, in order of appearance, and its false value; index -1: none.
 
     """
     writer = _Writer(lie)
@@ -81,8 +81,8 @@ def joint_state(stamp, frame, names, sequences, lie=(-1, 0)):
 
 
 def lie(rng, names):
-    """Return a lie about one count of a state of so many names."""
-    # A count is only behind the texts: as many are tried there as among them.
+    """Return index and false value for a state with a number of names."""
+    # Half of them behind the texts, where only few counts are.
     at = (
         rng.randrange(names + 5)
         if rng.random() < 0.5

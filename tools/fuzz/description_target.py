@@ -1,4 +1,4 @@
-"""The first target: a robot description, as the node takes it from its topic."""
+"""The first target: a robot description, as the node reads it from its topic."""
 
 from dynamics_node import DynamicsError, RobotDescriptionError, RobotModel
 from dynamics_node.ros.parameters.table import check_all
@@ -7,11 +7,11 @@ import numpy as np
 
 from .audit import nothing_opened
 from .descriptions import bases, descriptions
-from .error_digest import first_words
+from .error_digest import error_digest
 
 NAME = 'descriptions'
 SUFFIX = '.urdf'
-# One sentence about up to 1000 links, of which each is shown by at most 62 characters.
+# Characters: one sentence about up to 1000 links, each quoted with at most 62 characters.
 _LONGEST_PROBLEM = 70_000
 
 
@@ -21,34 +21,34 @@ def inputs():
 
 
 def warm_up():
-    """Load whatever is loaded lazily."""
+    """Load lazy modules."""
     for text in set(bases()):
         _answer(text.encode())
 
 
 def to_bytes(data):
-    """Return an input as the content of a file."""
+    """Convert an input to the content of a file."""
     return data
 
 
 def from_bytes(data):
-    """Return the input that `to_bytes` has written."""
+    """Convert the content of a file to an input."""
     return data
 
 
 def check(data):
     """
-    Put a description through the target.
+    Process a description.
 
     Returns
     -------
     list of str
-        How it was answered: 'taken' or the first words of what is wrong.
+        The answer: 'taken', or the digest of the error.
 
     Raises
     ------
     Exception
-        Anything that is no answer: the finding.
+        The finding.
 
     """
     with nothing_opened():
@@ -59,13 +59,13 @@ def _answer(data):
     try:
         model = RobotModel.from_urdf(data)
     except RobotDescriptionError as error:
-        _judge(error.problems)
-        return 'refused: ' + first_words(error.problems[0])
-    _judge(model.warnings)
+        _check_sentences(error.problems)
+        return 'refused: ' + error_digest(error.problems[0])
+    _check_sentences(model.warnings)
     return _use(model) if model.joint_names else 'taken: no joint moves'
 
 
-def _judge(sentences):
+def _check_sentences(sentences):
     for sentence in sentences:
         assert sentence.isprintable(), f'not to be printed: {sentence!r}'
         assert 0 < len(sentence) <= _LONGEST_PROBLEM, f'{len(sentence)} characters: {sentence:.99}'
@@ -89,7 +89,7 @@ def _use(model):
             assert np.isfinite(array).all(), f'{name} is not finite: {array}'
         is_usable = robot.is_mass_matrix_positive_definite()
     except DynamicsError as error:
-        return 'taken, then refused: ' + first_words(str(error))
+        return 'taken, then refused: ' + error_digest(str(error))
     robot.unlimited_joints([])
     repr(model)
     assert not model.is_specialized

@@ -1,4 +1,4 @@
-"""Descriptions: robots broken as XML, as text and as bytes, and what never was a robot."""
+"""Descriptions: robots broken as XML, as text and as bytes; random text and bytes."""
 
 from functools import cache
 import random
@@ -10,7 +10,7 @@ from .mutated_bytes import broken
 from .mutated_xml import changed_text, changed_tree, grown_text
 from .seeds import seeds, siblings
 
-# Every element that dynamics reads, and those that it must not look at.
+# All elements that dynamics reads, and others that it has to ignore.
 EVERYTHING = """<?xml version="1.0"?>
 <robot name="everything">
   <material name="m"><texture filename="file:///nowhere/t.png"/></material>
@@ -38,7 +38,7 @@ EVERYTHING = """<?xml version="1.0"?>
   <ros2_control name="c" type="system"><joint name="shoulder"/></ros2_control>
 </robot>
 """
-# What kinds of changes, and how often of each: most of them leave it XML.
+# Kinds of changes by frequency: most of them preserve XML.
 _CHANGES = ('tree',) * 16 + ('text', 'text', 'encoding', 'bytes')
 _ENCODINGS = ('utf-8-sig', 'utf-16', 'utf-16-be', 'utf-32', 'latin-1', 'cp1252', 'utf-7')
 _DECLARED = ('utf-8', 'utf-16', 'shift_jis', 'utf-7', 'nonsense', '')
@@ -46,7 +46,7 @@ _DECLARED = ('utf-8', 'utf-16', 'shift_jis', 'utf-7', 'nonsense', '')
 
 @cache
 def bases():
-    """Return whole robots, as text: the small ones come often, because they are quick."""
+    """Return complete robots as text; small ones are frequent, because they are fast."""
     small = [random_urdf(seed, joints=1 + seed % 3) for seed in range(6)]
     return (*[EVERYTHING] * 8, *small, PENDULUM.read_text(), ARM7.read_text())
 
@@ -55,9 +55,9 @@ def descriptions():
     """
     Return a strategy of lists of bytes that may, or may not, describe a robot.
 
-    Hypothesis chooses a robot and a list of seeds, one per change, and makes a list that finds
-    something shorter. What a change does comes from its seed: to choose every place and value by
-    hypothesis takes ten times as long as to read the robot.
+    Hypothesis chooses a robot and a list of seeds, one per change, and shrinks the list of a
+    finding. Each change is drawn from its seed: if hypothesis drew every place and value, that
+    would take ten times as long as reading the robot.
 
     """
     ways = {
@@ -85,7 +85,7 @@ def _changed(text, each):
     for seed in each:
         rng = random.Random(seed)
         changes[rng.choice(_CHANGES)].append(rng)
-    # Trees before texts before bytes: what is no XML any more cannot be changed as a tree.
+    # Trees before texts before bytes: only XML can be changed as a tree.
     if changes['tree']:
         text = changed_tree(changes['tree'], text)
     for rng in changes['text']:

@@ -1,12 +1,12 @@
-"""What a refusal is about, without what is different in each: names, numbers, places."""
+"""The digest of an error message: its first words without names and numbers."""
 
 import re
 
 _WORDS = 7
 
 
-def first_words(text):
-    """Return the first words of a message; names and numbers as an ellipsis."""
+def error_digest(text):
+    """Return the first words of a message, with an ellipsis for each name and number."""
     text = re.sub(r"""'(\\.|[^'\\])*'|"(\\.|[^"\\])*"|<.*?>""", '…', text)
     text = re.sub(r'[-+]?[0-9][-+.0-9e]*', '…', text)
     return ' '.join(text.split()[:_WORDS])

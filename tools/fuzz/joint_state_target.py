@@ -1,4 +1,4 @@
-"""The second target: serialized joint states, as the node takes them from its topic."""
+"""The second target: serialized joint states, as the node reads them from its topic."""
 
 from itertools import count
 import math
@@ -18,12 +18,12 @@ from sensor_msgs.msg import JointState
 
 from .audit import nothing_opened
 from .capture import nothing_printed, NOWHERE, stderr_to
-from .error_digest import first_words
+from .error_digest import error_digest
 from .joint_states import CLOCK, JOINTS, PERIOD, streams
 
 NAME = 'joint states'
 SUFFIX = '.hex'
-# The last joint is measured, but nothing depends on it.
+# The last joint is measured, but not needed.
 _NEEDED = JOINTS[:3]
 _LIMITS = MotionLimits(
     JOINTS,
@@ -32,7 +32,7 @@ _LIMITS = MotionLimits(
     [False, True, False, False],
 )
 _TIMEOUT = 0.1
-# A text that stands in the log, once a second.
+# Characters of a log line.
 _LONGEST_MESSAGE = 1_000
 
 
@@ -42,33 +42,33 @@ def inputs():
 
 
 def warm_up():
-    """Load whatever is loaded lazily."""
+    """Load lazy modules."""
     _answer([bytes.fromhex('00010000') + bytes(28), b''])
 
 
 def to_bytes(stream):
-    """Return an input as the content of a file: a line of hexadecimal digits per message."""
+    """Convert an input to the content of a file: a line of hexadecimal digits per message."""
     return ''.join(data.hex() + '\n' for data in stream).encode()
 
 
 def from_bytes(data):
-    """Return the input that `to_bytes` has written."""
+    """Convert the content of a file to an input."""
     return [bytes.fromhex(line) for line in data.decode().splitlines()]
 
 
 def check(stream):
     """
-    Put a stream of messages through the target.
+    Process a stream of messages.
 
     Returns
     -------
     list of str
-        How each of them was answered: 'taken', or the first words of what is wrong.
+        The answer to each: 'taken', or the digest of the error.
 
     Raises
     ------
     Exception
-        Anything that is no answer: the finding.
+        The finding.
 
     """
     with nothing_opened():
@@ -85,14 +85,14 @@ def _answer(stream):
             answers.append(_receive(reader, buffer, data, clock))
         except RejectedStateError as error:
             _judge_refusal(error, before, _state(buffer))
-            answers.append(f'refused: {error.kind}: {first_words(str(error))}')
+            answers.append(f'refused: {error.kind}: {error_digest(str(error))}')
         _judge(buffer)
     return answers
 
 
 def _judge_refusal(error, before, after):
     _judge_text(str(error))
-    # After a fault nothing counts as measured, but all stands where it stood.
+    # After a fault no joint counts as measured, but all positions stay.
     changed = after[:3] != before[:3] if error.is_fault else after != before
     assert not changed, f'a refused message changed {before} to {after}'
 
@@ -101,7 +101,7 @@ def _receive(reader, buffer, data, clock):
     message = _read(reader, data)
     stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
     now = clock * 1e-9
-    # Driven, so that what must stop an arm is heard of.
+    # Enabled, so that faults are reported.
     path = TorquePath(OutputSettings(_TIMEOUT, 0.0, 0.0, 'ramp_to_zero'))
     path.use(buffer)
     path.enable(now)
@@ -119,7 +119,7 @@ def _receive(reader, buffer, data, clock):
 
 
 def _read(reader, data):
-    # What rclpy reads is right.
+    # rclpy is the reference.
     try:
         with stderr_to(NOWHERE):
             expected = deserialize_message(data, JointState)
@@ -130,7 +130,7 @@ def _read(reader, data):
         with nothing_printed():
             message = reader.read(data)
     except RejectedStateError:
-        # The reader refuses more, but only what no robot sends.
+        # The reader refuses more than rclpy, but no message that robots send.
         assert (
             expected is None
             or data[:2] not in (b'\x00\x00', b'\x00\x01')
@@ -140,7 +140,7 @@ def _read(reader, data):
     except Exception as error:
         if repr(error) != refusal:
             raise
-        # rclpy's own, which the node turns into such a one.
+        # An error of rclpy, which the node converts.
         raise RejectedStateError('unreadable', str(error)) from error
     if expected is None:
         for values in (message.position, message.velocity, message.effort):
@@ -167,8 +167,8 @@ def _is_too_large(message):
 
 
 def _state(buffer):
-    # As bytes for the same reason. The time is after all that come: a joint measured by any of
-    # them is older by another number of periods.
+    # As bytes for the same reason. At a time after all messages, the age of a joint tells by
+    # which message it was measured.
     end = (CLOCK + 8 * PERIOD) * 1e-9
     return (
         buffer.position.tobytes(),

@@ -1,4 +1,4 @@
-"""Streams of joint states: of the same joints, of others, permuted, wrong, cut and flipped."""
+"""Streams of joint states: valid, permuted, of other joints, false, truncated, random."""
 
 import random
 
@@ -7,7 +7,7 @@ from .mutated_bytes import broken
 from .seeds import seeds, siblings
 
 JOINTS = ('shoulder', 'elbow', 'wrist', 'finger')
-# When the first message comes and how much later each further one, ns.
+# Time of the first message, and period, ns.
 CLOCK, PERIOD = 5_000_000_000, 10_000_000
 _USUAL = tuple(name.encode() + b'\x00' for name in JOINTS)
 _UNUSUAL = (
@@ -41,7 +41,7 @@ _REPRESENTATIONS = (
 
 def streams():
     """
-    Return a strategy of streams: lists of bytes, what one subscription receives in turn.
+    Return a strategy of streams: lists of serialized messages of one subscription.
 
     Hypothesis chooses a seed for each message; see `descriptions` for why. The streams of one
     drawing differ in their last message.
@@ -60,7 +60,7 @@ def _message(rng, clock):
 
 
 def right(rng, clock):
-    """A robot's next state."""
+    """Return the next valid state of a robot."""
     positions = [0.5 + rng.uniform(-0.01, 0.01) for _ in _USUAL]
     velocities = [rng.uniform(-1.0, 1.0) for _ in _USUAL]
     return joint_state(divmod(clock, 10**9), b'base\x00', _USUAL, (positions, velocities, []))
@@ -99,18 +99,18 @@ def _values(rng, count):
 
 
 def _other(rng, clock):
-    """Well made, but of any joints and numbers."""
+    """Return a well-formed message with random joints and numbers."""
     return joint_state(*_parts(rng, clock))
 
 
 def _lying(rng, clock):
-    """One count is not true."""
+    """Return a message with a false count."""
     parts = _parts(rng, clock)
     return joint_state(*parts, lie(rng, len(parts[2])))
 
 
 def _mangled(rng, clock):
-    """One or two places broken, of what was well made."""
+    """Return a well-formed message broken at one or two places."""
     data = (right if rng.random() < 0.5 else _other)(rng, clock)
     for _ in range(rng.randint(1, 2)):
         data = broken(rng, data)
@@ -118,13 +118,13 @@ def _mangled(rng, clock):
 
 
 def _foreign(rng, clock):
-    """Another representation is said in front, and numbers may be in that order."""
+    """Return a message with another representation in its header."""
     data = (right if rng.random() < 0.5 else _lying)(rng, clock)
     return rng.choice((rng.choice(_REPRESENTATIONS), rng.randbytes(4))) + data[4:]
 
 
 def _noise(rng, clock):
-    """Never was a message."""
+    """Return random bytes."""
     return rng.randbytes(rng.randrange(120))
 
 

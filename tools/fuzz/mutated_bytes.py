@@ -1,12 +1,12 @@
-"""Bytes broken without looking at what they mean."""
+"""Bytes broken without regard to their meaning."""
 
-# No input becomes longer; descriptions beyond 5 MB are refused by their length alone.
+# Longest input, bytes: longer than the 5 MB at which descriptions are refused.
 _LONGEST = 6_000_000
 _TIMES = (2, 2, 3, 10, 10, 100, 1_000, 20_000)
 
 
 def broken(rng, data):
-    """Return bytes with one place cut, flipped, removed, repeated or put in."""
+    """Return bytes truncated, or with some bytes flipped, removed, repeated or replaced."""
     start = rng.randint(0, len(data))
     end = min(len(data), start + rng.choice((0, 1, 2, 4, 8, rng.randint(0, 60))))
     return rng.choice(_WAYS)(rng, data, start, end)[:_LONGEST]

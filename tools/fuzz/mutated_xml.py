@@ -1,4 +1,4 @@
-"""XML broken by meaning: attributes, numbers, names, elements, and what stands between them."""
+"""XML with broken attributes, numbers, names, elements and text."""
 
 from contextlib import suppress
 import re
@@ -191,7 +191,7 @@ _SNIPPETS = (
     '<a ' + 'b ' * 500 + '/>',
 )
 
-# Near what is refused by its size, or beyond; rare, because they take long to make.
+# Near the size limits, or beyond; rare, because they are slow.
 _LARGE = (
     '<a>' * 50_000,
     '<x/>' * 190_000,
@@ -204,7 +204,7 @@ _LARGE = (
 
 
 def changed_tree(rngs, text):
-    """Return a robot's text after a change of its elements by each of some random generators."""
+    """Return the text of a robot after one change of its elements per random generator."""
     robot = ElementTree.fromstring(text.encode())
     for rng in rngs:
         parents = [(parent, child) for parent in robot.iter() for child in parent]
@@ -222,7 +222,7 @@ def changed_text(rng, text):
 
 
 def grown_text(rng):
-    """Return XML made of URDF's words without any sense."""
+    """Return meaningless XML of URDF's tags and attributes."""
     robot = _grown(rng, 'robot', 4)
     return ElementTree.tostring(robot, encoding='unicode')
 
@@ -285,7 +285,7 @@ def _set_one_number(rng, parent, child, parents):
 
 
 def _scale(rng, parent, child, parents):
-    # Far too large, far too small, negative: but numbers.
+    # Far too large, far too small or negative, but numbers.
     with_numbers = _with_numbers(parents)
     if with_numbers:
         element, name = rng.choice(with_numbers)
@@ -318,13 +318,13 @@ def _remove(rng, parent, child, _):
 def _double(rng, parent, child, _):
     at = rng.randint(0, len(parent))
     count = rng.choice((1, 1, 1, 1, 1, 2, 3, 50, 50)) if rng.random() < 0.97 else 1_200
-    # The same element so many times: it is written out as often, and changed everywhere.
+    # The same object many times: later changes apply to all copies.
     parent[at:at] = [child] * count
 
 
 def _move(rng, parent, child, parents):
     target, _ = rng.choice(parents)
-    # Not into itself or what it holds: that would be no tree.
+    # Not into itself or its descendants.
     if all(target is not inner for inner in child.iter()):
         parent.remove(child)
         target.append(child)
@@ -342,7 +342,7 @@ def _wrap(rng, parent, child, _):
     parent.append(child)
 
 
-def _say(rng, parent, child, _):
+def _set_text(rng, parent, child, _):
     child.text = _value(rng)
 
 
@@ -362,5 +362,5 @@ _WAYS = (
     _move,
     _rename,
     _wrap,
-    _say,
+    _set_text,
 )

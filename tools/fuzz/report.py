@@ -1,4 +1,4 @@
-"""What the campaigns print at their end."""
+"""The tables of the campaigns."""
 
 from rich import box
 from rich.markup import escape
@@ -8,7 +8,7 @@ _ANSWERS = 12
 
 
 def print_results(console, results, seed):
-    """Print the figures of all targets, how inputs were answered, and what was found."""
+    """Print figures, answers and findings of all targets."""
     table = Table(box=box.SIMPLE_HEAD, title=f'seed {seed}')
     table.add_column('')
     for result in results:

@@ -1,7 +1,7 @@
 """
-`python -m fuzz.seeded_defects`: one defect after the other, and what the targets say of each.
+`python -m fuzz.seeded_defects`: seed one defect after the other, and print the answers as JSON.
 
-A process of its own, because an audit hook stays for ever. Prints a JSON object.
+A separate process, because an audit hook cannot be removed.
 
 """
 
@@ -28,12 +28,12 @@ _STATES = [
     for i in range(3)
 ]
 _CUT = _STATES[0][:-30]
-# Its count of positions, behind those of the frame, the names and their lengths, is not true.
+# Count 3, that of the positions, is false.
 _LYING = [joint_state((5, 0), b'base\x00', [b'elbow\x00'], ([0.5], [], []), lie=(3, 2**28))]
 
 
 def _open(*_):
-    return open('/dev/null')  # noqa: PTH123  (the plain one is what is meant)
+    return open('/dev/null')  # noqa: PTH123
 
 
 def _open_and_go_on(*_):
@@ -59,7 +59,7 @@ _good_as_before = joint_state_cdr.JointStateReader._as_before
 _good_learn = joint_state_cdr.JointStateReader._learn
 _good_end = joint_state_cdr.end_of_names
 _Reader = joint_state_cdr.JointStateReader
-# What is planted → in which object, under which name, what instead, and the input.
+# Defect → object, attribute, replacement, input.
 SEEDED = {
     'nothing in a description': (read, 'math', read.math, _TEXT),
     'a file is opened': (read, 'check_text', _open, _TEXT),
@@ -113,16 +113,16 @@ SEEDED = {
 
 
 def main():
-    """Plant, look, and pull out again."""
+    """Print the answer of a target for each defect, as JSON."""
     be_strict()
     description_target.warm_up()
     joint_state_target.warm_up()
-    print(json.dumps({name: _noticed(*defect) for name, defect in SEEDED.items()}))
+    print(json.dumps({name: _answer(*defect) for name, defect in SEEDED.items()}))
 
 
-def _noticed(owner, name, instead, given):
+def _answer(owner, name, replacement, given):
     target = description_target if isinstance(given, bytes) else joint_state_target
-    with mock.patch.object(owner, name, instead):
+    with mock.patch.object(owner, name, replacement):
         try:
             return str(target.check(given))
         except Exception as error:

@@ -1,7 +1,6 @@
 """
-A simulated arm held by the node for as long as one likes, while faults are put on its line.
+A simulated arm held by the node for minutes or days, with injected faults: `python -m soak -h`.
 
-`python -m soak -h`. The plain classes here decide what is wrong on the line and whether the node
-took it well; the processes and the rig only carry messages to them.
+Plain classes inject the faults and judge the node; rig and processes only carry messages.
 
 """

@@ -1,4 +1,4 @@
-"""`python -m soak`: the simulated arm, faults at random, and a verdict as exit code."""
+"""`python -m soak`: a simulated arm with random faults, and a verdict as exit code."""
 
 import argparse
 import random
@@ -33,14 +33,14 @@ def main(arguments=None):
             console.print(f'soak failed: {error}')
             return 1
         print_report(console, soak, rig.client, options.seed)
-        found = failures(soak, rig.client)
+        problems = failures(soak, rig.client)
     finally:
         rig.close()
-    for failure in found:
+    for failure in problems:
         console.print(f'soak failed: {failure}')
-    if not found:
+    if not problems:
         console.print('Nothing lost, nothing leaked, nothing out of limits.')
-    return 1 if found else 0
+    return 1 if problems else 0
 
 
 def _options(arguments):
@@ -51,13 +51,13 @@ def _options(arguments):
         type=float,
         default=500.0,
         metavar='HZ',
-        help='of the joint states (default: 500)',
+        help='rate of the joint states (default: 500)',
     )
     parser.add_argument(
         '--seed',
         type=int,
         default=int(time.time()) % 100_000,
-        help='decides which faults come when (default: a new one)',
+        help='seed of kind and time of the faults (default: a new one)',
     )
     return parser.parse_args(arguments)
 

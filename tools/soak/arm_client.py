@@ -1,4 +1,4 @@
-"""What somebody beside the robot sees and does: states, commands, services of all processes."""
+"""`ArmClient`: states, commands and services of robot, relay and node."""
 
 import bisect
 from collections import deque
@@ -20,24 +20,24 @@ from support.processes import Client, LATCHED, PATIENCE
 from .command_judge import CommandJudge
 from .faulty_link import stamp_of
 
-REMEMBERED = 20_000  # states and commands: 40 s of each
-# Whatever was written so long ago has arrived, s.
-SETTLED = 1.0
-# Then a service is asked again, s.
-ANSWER = 1.0
+HISTORY = 20_000  # states and commands: 40 s of each
+# Messages written earlier than this have arrived, s.
+MAX_TRANSPORT = 1.0
+# Time after which a service is called again, s.
+RETRY_AFTER = 1.0
 
 
 class ArmClient(Client):
     """
     A client of robot, relay and node.
 
-    Times are those of the writers, in s since the client was made.
+    Times are source timestamps, in s since the client was created.
 
     Attributes
     ----------
     truth : deque of (float, bytes)
-        What the robot itself says, whatever the relay makes of it: time and message; see
-        `state` and `truth_between`.
+        Joint states of the robot before the relay, serialized; see `state` and
+        `truth_between`.
     commands : deque of (float, list of float)
         Time and efforts.
     outputs : list of OutputState
@@ -46,8 +46,8 @@ class ArmClient(Client):
         By part ('joint states', ...) and key.
     judge : CommandJudge
     on_command, on_output, on_diagnostics : callable
-        Called with the time of every command, with time and name of every state of the output,
-        and with all diagnostics.
+        Called with the time of each command, with time and name of each output state, and with
+        the diagnostics.
 
     """
 
@@ -58,23 +58,23 @@ class ArmClient(Client):
         Parameters
         ----------
         names : list of str
-            The driven joints, in the order of the command.
+            Driven joints in the order of the command.
         limits, rate_limits : sequence of float
             See `CommandJudge`.
 
         """
         super().__init__()
-        # The simulated robot is the one that publishes these.
+        # The simulated robot publishes these.
         self.node.destroy_publisher(self.states)
         self.node.destroy_publisher(self.description)
         self.epoch = time.time_ns()
         self.judge = CommandJudge(limits, rate_limits)
-        self.truth, self.commands = deque(maxlen=REMEMBERED), deque(maxlen=REMEMBERED)
+        self.truth, self.commands = deque(maxlen=HISTORY), deque(maxlen=HISTORY)
         self.output_times, self.diagnostics, self.diagnostics_received = [], {}, 0
         self.on_command = self.on_output = self.on_diagnostics = lambda *news: None
         self._names, self._rows = names, None
         many = QoSProfile(depth=1000)
-        # As bytes: only few of them are ever looked into.
+        # Serialized: few of them are read.
         self.node.create_subscription(
             JointState, 'robot/joint_states', self._on_truth, many, raw=True
         )
@@ -90,27 +90,27 @@ class ArmClient(Client):
         self.node.create_subscription(DiagnosticArray, '/diagnostics', self._on_diagnostics, many)
 
     def call(self, kind, name, request=None, action=None, timeout=PATIENCE):
-        """Call a service; again if there is no answer: whoever has just died takes requests."""
+        """Call a service, repeatedly: a process that has just died still receives requests."""
         end = time.monotonic() + timeout
         while True:
             try:
-                return super().call(kind, name, request, action, ANSWER)
+                return super().call(kind, name, request, action, RETRY_AFTER)
             except AssertionError:
                 if time.monotonic() > end:
                     raise
 
     def time_of(self, nanoseconds):
-        """Return a time on the system's clock, ns, as one of this client, s."""
+        """Convert a time of the system clock, ns, to one of this client, s."""
         return (nanoseconds - self.epoch) * 1e-9
 
     @property
     def now(self):
-        """Now, s."""
+        """The current time, s."""
         return self.time_of(time.time_ns())
 
     @property
     def output(self):
-        """The newest state of the output, a word; '' before there is one."""
+        """Name of the newest output state; '' before the first."""
         return self.outputs[-1].name if self.outputs else ''
 
     @property
@@ -131,11 +131,11 @@ class ArmClient(Client):
         return np.abs(self.state[1]).max()
 
     def settle(self, everything=False):
-        """Judge what has certainly arrived, or everything that is there."""
-        self.judge.settle(*([] if everything else [self.now - SETTLED]))
+        """Judge all commands that have certainly arrived, or all received ones."""
+        self.judge.settle(*([] if everything else [self.now - MAX_TRANSPORT]))
 
     def forget_node(self):
-        """Expect another node instead of the one that has ended."""
+        """Expect a new node in place of the one that has ended."""
         self.settle(everything=True)
         self.judge.forget()
         self.outputs.clear()
@@ -143,9 +143,9 @@ class ArmClient(Client):
 
     def truth_between(self, begin, end):
         """
-        Return what the robot itself said within a time, s, and just before.
+        Return the robot's states in an interval, s, and the one before it.
 
-        Waits until it has said all of it.
+        Waits until all of them have arrived.
 
         Returns
         -------
@@ -163,7 +163,7 @@ class ArmClient(Client):
         return tuple(np.array(column) for column in zip(*chosen))
 
     def set_fault(self, fault):
-        """Change what is wrong with the line."""
+        """Set the fault of the link."""
         self.set_parameter(
             'relay',
             'fault',
@@ -171,7 +171,7 @@ class ArmClient(Client):
         )
 
     def set_clock_offset(self, seconds):
-        """Let the relay publish /clock and move all stamps; NaN: no longer."""
+        """Let the relay publish /clock and shift all stamps; NaN ends it."""
         self.set_parameter(
             'relay',
             'clock_offset',
@@ -179,7 +179,7 @@ class ArmClient(Client):
         )
 
     def set_state_timeout(self, seconds):
-        """Change how old a joint state may be for the node."""
+        """Set the node's parameter state_timeout."""
         self.set_parameter(
             'dynamics_node',
             'state_timeout',
@@ -196,26 +196,26 @@ class ArmClient(Client):
         assert result.successful, result.reason
 
     def set_brakes(self, engaged):
-        """Engage or release the brakes of the robot; tell whether it did."""
+        """Engage or release the brakes of the robot; return success."""
         return self.call(
             SetBool, '/simulated_robot/set_brakes', SetBool.Request(data=engaged)
         ).success
 
     def reset(self):
-        """Send the robot to its start pose; tell whether it set out."""
+        """Move the robot to its start pose; return success."""
         return self.call(Trigger, '/simulated_robot/reset').success
 
     def sent(self):
-        """Return how many joint states the relay has published."""
+        """Return the number of joint states that the relay has published."""
         return int(self.call(Trigger, '/relay/sent').message)
 
     def number(self, part, key):
-        """Return a number of the newest diagnostics, 0 if it is not there."""
+        """Return a number of the newest diagnostics; 0 if it is missing."""
         return float(self.diagnostics.get(part, {}).get(key, 0))
 
     def until_diagnosed(self):
-        """Wait for diagnostics that were made after this call."""
-        # Those on their way now may be older: the second from now is not.
+        """Wait for diagnostics created after this call."""
+        # The next message may be older than this call; the second one is not.
         first = self.diagnostics_received
         self.until(lambda: self.diagnostics_received >= first + 2)
 

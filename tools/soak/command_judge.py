@@ -1,11 +1,11 @@
-"""Whether every command was one that may reach an arm, by the clock of the writer."""
+"""`CommandJudge`: every command is safe for an arm, by the clock of the writer."""
 
 import heapq
 import math
 
 OFF = ('READY', 'FAULT', 'HOLDING')
-# The writer stamps with the system's clock, which may run faster or slower than the steady one
-# that the node measures with: NTP turns it by at most so much.
+# Largest relative difference between the system clock of the stamps, under NTP, and the steady
+# clock of the node.
 CLOCK_SLEW = 5e-4
 ROUNDING = 1e-9  # relative to the limits
 
@@ -14,17 +14,15 @@ class CommandJudge:
     """
     Checks a stream of commands: length, finite, within the limits, their steps, silence.
 
-    All times are those at which the writer wrote, from DDS: what happens on the way to the
-    listener neither excuses nor accuses anybody.
+    All times are source timestamps of DDS: delays of the transport have no influence.
 
-    A step is judged without any tolerance for a computer that is busy. The node reads its clock
-    at some moment before it writes a command, and, having one thread, not before it wrote the
-    one before. So there must be moments `now[i]`, each between the writing of command i - 1 and
-    that of command i, with
+    Steps are judged without a tolerance for a busy computer. The node reads its clock before it
+    writes a command and, with one thread, after it wrote the previous one. So times `now[i]` must
+    exist, each between the writing of command i - 1 and that of command i, with
 
         |command[i] - command[i - 1]| <= rate_limit * (now[i] - now[i - 1])
 
-    and to take the earliest possible one every time finds them if there are any.
+    Choosing the earliest possible time for each command finds them if they exist.
 
     Attributes
     ----------
@@ -33,11 +31,11 @@ class CommandJudge:
     commands : int
         Commands judged.
     lost : int
-        Commands that were written and did not arrive, by their sequence numbers.
+        Commands that did not arrive, by their sequence numbers.
     violations : list of str
-        What was wrong, for people; the first MOST of them.
+        The first MOST violations, as text.
     count : int
-        How many violations there were.
+        Number of violations.
 
     """
 
@@ -64,7 +62,7 @@ class CommandJudge:
         self.violations = []
 
     def forget(self):
-        """Expect another node: its output is off, and its commands begin at zero."""
+        """Expect a new node: its output is off, and its commands begin at zero."""
         self._is_off, self._why_off = True, 'before any state'
         self.last = [0.0] * len(self._limits)
         self._now = self._written = -math.inf
@@ -106,12 +104,12 @@ class CommandJudge:
 
     def settle(self, until=math.inf):
         """
-        Judge what was written up to a time: commands and states arrive in any order.
+        Judge messages in the order of their writing, up to a time.
 
         Parameters
         ----------
         until : float
-            s; everything that was written before must have arrived.
+            s; all messages written before have arrived.
 
         """
         while self._pending and self._pending[0][0] <= until:
@@ -123,7 +121,7 @@ class CommandJudge:
 
     def _judge_state(self, time, name):
         if self._is_off and name == 'STARTING':
-            # Enabling reads the clock, too, just before it says so.
+            # Enabling reads the clock just before it publishes the state.
             self._now = self._written = time
         self._is_off, self._why_off = name in OFF, name
 
@@ -155,7 +153,7 @@ class CommandJudge:
             for joint, (value, last, rate) in enumerate(zip(values, self.last, self._rate_limits))
         )
         earliest = max(self._now + needed, self._written)
-        if earliest > time + 1e-6:  # stamps of DDS are exact to less than that
+        if earliest > time + 1e-6:  # s, precision of the stamps
             self._accuse(
                 time,
                 f'joint {joint}: the step from {self.last[joint]:.6g} to '

@@ -1,23 +1,23 @@
-"""What an arm does whose effort goes to zero by a ramp: MuJoCo's word for it."""
+"""The sag of an arm while its effort fades to zero, by MuJoCo."""
 
 from dynamics_node.demo.mujoco_arm import MujocoArm
 from dynamics_node.demo.mujoco_model import TIME_STEP
 import numpy as np
 
 
-def sink(urdf_text, position, effort, ramp, duration):
+def expected_sag(urdf_text, position, effort, ramp, duration):
     """
-    Let an arm at rest sink.
+    Simulate an arm at rest while its effort fades to zero.
 
     Parameters
     ----------
     urdf_text : str
     position : numpy.ndarray, shape (n_driven,)
-        Where it stands, rad or m.
+        Start position, rad or m.
     effort : numpy.ndarray, shape (n_driven,)
-        What holds it at first, N m or N.
+        Initial effort, N m or N.
     ramp : float
-        From that effort to zero, s.
+        Duration from that effort to zero, s.
     duration : float
         s.
 

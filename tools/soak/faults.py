@@ -1,4 +1,4 @@
-"""The faults of a soak: how each begins and ends, how long it lasts, and what follows from it."""
+"""The faults of a soak: injection, duration and expected output state."""
 
 from collections.abc import Callable
 from contextlib import contextmanager
@@ -11,30 +11,30 @@ from std_srvs.srv import Trigger
 
 from .rig import COMMAND_TOPIC
 
-# What the soak's node takes for stale, s; long, so that a busy machine does not do it alone.
+# state_timeout of the node, s: long, so that a busy machine alone does not exceed it.
 STATE_TIMEOUT = 0.5
 
 
 @dataclass(frozen=True)
 class Fault:
     """
-    Something that goes wrong.
+    One kind of fault.
 
     Attributes
     ----------
     name : str
     inflict : callable(rig) -> context manager
-        Goes wrong from the beginning to the end of the context.
+        The fault lasts as long as the context.
     stops : bool
-        Whether the output has to end in FAULT, or to stay ACTIVE.
+        Whether the output must end in FAULT, or stay ACTIVE.
     reason : str
-        Part of the reason of the FAULT.
+        Part of the reason of that FAULT.
     longest : float
-        It lasts from a third of it on, s.
+        Longest duration, s; the shortest is a third of it.
     weight : float
-        How often it comes, beside the others.
-    breaks_books : bool
-        Whether states cannot be counted meanwhile: two publishers count for themselves.
+        Relative frequency.
+    breaks_accounting : bool
+        Whether states cannot be counted meanwhile: each of two publishers numbers its own.
 
     """
 
@@ -44,10 +44,10 @@ class Fault:
     reason: str = ''
     longest: float = 1.0
     weight: float = 1.0
-    breaks_books: bool = False
+    breaks_accounting: bool = False
 
 
-def _on_the_line(kind, **options):
+def _of_the_link(kind, **options):
     @contextmanager
     def inflict(rig):
         rig.client.set_fault(kind)
@@ -72,7 +72,7 @@ def _killed(rig):
 
 @contextmanager
 def _node_stopped(rig):
-    # A stopped process cannot report its FAULT: it has to go on first.
+    # A stopped process reports its FAULT only after it has been continued.
     rig.processes.send('node', signal.SIGSTOP)
     try:
         rig.during(2 * STATE_TIMEOUT)
@@ -83,16 +83,16 @@ def _node_stopped(rig):
 
 @contextmanager
 def _second_state_publisher(rig):
-    rival = rig.client.node.create_publisher(JointState, 'joint_states', 1)
+    publisher = rig.client.node.create_publisher(JointState, 'joint_states', 1)
     yield
-    rig.client.node.destroy_publisher(rival)
+    rig.client.node.destroy_publisher(publisher)
 
 
 @contextmanager
 def _second_source_of_efforts(rig):
-    rival = rig.client.node.create_publisher(Float64MultiArray, COMMAND_TOPIC, 1)
+    publisher = rig.client.node.create_publisher(Float64MultiArray, COMMAND_TOPIC, 1)
     yield
-    rig.client.node.destroy_publisher(rival)
+    rig.client.node.destroy_publisher(publisher)
 
 
 @contextmanager
@@ -106,7 +106,7 @@ UNTIL_STALE = 3 * (STATE_TIMEOUT + 0.2)
 
 FAULTS = [
     *[
-        _on_the_line(kind, stops=False)
+        _of_the_link(kind, stops=False)
         for kind in (
             'permuted',
             'parts',
@@ -128,7 +128,7 @@ FAULTS = [
         )
     ],
     *[
-        _on_the_line(kind, stops=True, reason=STALE, longest=UNTIL_STALE)
+        _of_the_link(kind, stops=True, reason=STALE, longest=UNTIL_STALE)
         for kind in (
             'silent',
             'frozen',
@@ -142,26 +142,26 @@ FAULTS = [
             'bag_loop',
         )
     ],
-    _on_the_line('jump', stops=True, reason='times in a row'),
-    _on_the_line('too_fast', stops=True, reason='runaway'),
+    _of_the_link('jump', stops=True, reason='times in a row'),
+    _of_the_link('too_fast', stops=True, reason='runaway'),
     Fault('line stopped briefly', _stopped, stops=False, longest=0.3, weight=2.0),
     Fault('line stopped', _stopped, stops=True, reason=STALE, longest=UNTIL_STALE),
-    Fault('line killed', _killed, stops=True, reason=STALE, weight=0.3, breaks_books=True),
-    # Seen by the watchdog or by the next state, whichever comes first after the pause.
+    Fault('line killed', _killed, stops=True, reason=STALE, weight=0.3, breaks_accounting=True),
+    # Detected by the watchdog or by the next state, the first one after the pause.
     Fault(
         'node stopped',
         _node_stopped,
         stops=True,
         reason=f', limit {STATE_TIMEOUT:.3f} s',
         longest=UNTIL_STALE,
-        breaks_books=True,
+        breaks_accounting=True,
     ),
     Fault(
         'second publisher of states',
         _second_state_publisher,
         stops=True,
         reason='publishers on',
-        breaks_books=True,
+        breaks_accounting=True,
     ),
     Fault(
         'second source of efforts', _second_source_of_efforts, stops=True, reason='other publisher'

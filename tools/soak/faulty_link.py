@@ -1,4 +1,4 @@
-"""What can be wrong with a stream of joint states: a message in, messages out, and no ROS node."""
+"""`FaultyLink`: faults in a stream of joint states. No ROS node."""
 
 from collections import deque
 import random
@@ -8,33 +8,33 @@ from builtin_interfaces.msg import Time
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 
-FLOOD = 20  # messages for one: 10 kHz from a robot of 500 Hz
+FLOOD = 20  # messages per state: 10 kHz from a robot of 500 Hz
 FLOOD_STEP = 100_000  # [ns] between their stamps
 JUMP = 1.0  # [rad or m]
 TOO_FAST = 50.0  # [rad/s or m/s]
 CLOCKS_APART = 30_000_000_000  # [ns]
-LOOP = 100  # states that the loop of a bag repeats
-# What best-effort DDS still delivers, and what it never does: there it loses a fragment.
+LOOP = 100  # states repeated by a looping bag
+# Names in a message that best-effort DDS delivers, and in one that it loses.
 MANY, MILLION = 10_000, 1_000_000
-BUSY = 100  # states for which the line carries nothing else than a million names
+BUSY = 100  # states that the link drops during a message of a million names
 _STAMP = struct.Struct('<iI')
 _COUNT = struct.Struct('<I')
 _REPRESENTATION = b'\x00\x01\x00\x00'
 
 
-class Line:
+class FaultyLink:
     """
-    The line between a robot and the node.
+    The link between a robot and the node.
 
     Attributes
     ----------
     fault : str
-        What is wrong with it, a key of FAULTS; 'none' at first.
+        A key of FAULTS, initially 'none'.
 
     """
 
     def __init__(self, seed=0):
-        """Let everything through; `seed` decides what random faults look like."""
+        """Pass all messages; `seed` is that of random faults."""
         self._rng = random.Random(seed)
         self._recent = deque(maxlen=LOOP)
         self._big = {}
@@ -42,17 +42,17 @@ class Line:
 
     def switch(self, fault):
         """
-        Change what is wrong from now on.
+        Set the fault.
 
         Parameters
         ----------
         fault : str
-            A key of FAULTS, for every message; 'nan/7' for every seventh.
+            A key of FAULTS, for every message; 'nan/7': for every seventh.
 
         Raises
         ------
         ValueError
-            If there is no such fault.
+            If the fault is unknown.
 
         """
         kind, _, every = fault.partition('/')
@@ -68,7 +68,7 @@ class Line:
 
     def out(self, message):
         """
-        Return what comes out for a joint state.
+        Return the output for one joint state.
 
         Parameters
         ----------
@@ -77,7 +77,7 @@ class Line:
         Returns
         -------
         list of sensor_msgs.msg.JointState or bytes
-            Bytes are to be published as they are.
+            Bytes are published as they are.
 
         """
         self._count += 1
@@ -104,7 +104,7 @@ class Line:
         return [_chosen(message, order)]
 
     def _parts(self, message):
-        # One at a time, as two broadcasters send them: a queue has room for the newest only.
+        # Alternately, as two broadcasters send them: a queue holds only the newest.
         half, count = len(message.name) // 2, len(message.name)
         return [
             _chosen(message, range(half) if self._count // self._every % 2 else range(half, count))
@@ -145,7 +145,7 @@ class Line:
         return [self._names(MANY)]
 
     def _million_names(self, message):
-        # Newer states would drive its fragments out of the queue before they have arrived.
+        # Newer states would displace its fragments from the queue before they arrive.
         self._busy = BUSY
         return [self._names(MILLION)]
 
@@ -171,12 +171,12 @@ class Line:
     def _garbage(self, message):
         data = serialize_message(message)
         kind = self._rng.randrange(3)
-        if kind == 0:  # anything at all
+        if kind == 0:  # random bytes
             return [self._rng.randbytes(self._rng.randrange(len(data)))]
-        if kind == 1:  # cut off
+        if kind == 1:  # truncated
             return [data[: self._rng.randrange(len(data))]]
-        # Some bytes of a good one, behind the stamp and before the numbers: whatever bytes a
-        # number has, it is one, and may well be that of an arm that runs away.
+        # Random bytes between stamp and numbers: random numbers would be valid, and could
+        # look like a runaway arm.
         wrong = bytearray(data)
         numbers = sum(
             8 + 8 * len(field) for field in (message.position, message.velocity, message.effort)
@@ -193,7 +193,7 @@ class Line:
         return _changed(message, position=position)
 
     def _names(self, count):
-        # Made once, of bytes: as Python strings they would take the relay seconds.
+        # Serialized once: as Python strings they would take the relay seconds.
         if count not in self._big:
             names = _COUNT.pack(2) + b'j\0\0\0'
             head = (
@@ -211,28 +211,28 @@ class Line:
 
 
 FAULTS = {
-    'none': Line._none,
-    'silent': Line._silent,
-    'frozen': Line._frozen,
-    'permuted': Line._permuted,
-    'parts': Line._parts,
-    'half': Line._half,
-    'duplicated': Line._duplicated,
-    'nan': Line._nan,
-    'all_nan': Line._all_nan,
-    'length': Line._length,
-    'name_twice': Line._name_twice,
-    'unknown_names': Line._unknown_names,
-    'flood': Line._flood,
-    'many_names': Line._many_names,
-    'million_names': Line._million_names,
-    'jump': Line._jump,
-    'too_fast': Line._too_fast,
-    'no_stamp': Line._no_stamp,
-    'old_stamp': Line._old_stamp,
-    'future_stamp': Line._future_stamp,
-    'bag_loop': Line._bag_loop,
-    'garbage': Line._garbage,
+    'none': FaultyLink._none,
+    'silent': FaultyLink._silent,
+    'frozen': FaultyLink._frozen,
+    'permuted': FaultyLink._permuted,
+    'parts': FaultyLink._parts,
+    'half': FaultyLink._half,
+    'duplicated': FaultyLink._duplicated,
+    'nan': FaultyLink._nan,
+    'all_nan': FaultyLink._all_nan,
+    'length': FaultyLink._length,
+    'name_twice': FaultyLink._name_twice,
+    'unknown_names': FaultyLink._unknown_names,
+    'flood': FaultyLink._flood,
+    'many_names': FaultyLink._many_names,
+    'million_names': FaultyLink._million_names,
+    'jump': FaultyLink._jump,
+    'too_fast': FaultyLink._too_fast,
+    'no_stamp': FaultyLink._no_stamp,
+    'old_stamp': FaultyLink._old_stamp,
+    'future_stamp': FaultyLink._future_stamp,
+    'bag_loop': FaultyLink._bag_loop,
+    'garbage': FaultyLink._garbage,
 }
 
 
@@ -242,7 +242,7 @@ def shifted(data, offset):
 
 
 def stamp_of(data):
-    """Return the stamp of any serialized message that begins with a header, ns."""
+    """Return the stamp of a serialized message with a header, ns."""
     sec, nanosec = _STAMP.unpack_from(data, len(_REPRESENTATION))
     return sec * 1_000_000_000 + nanosec
 

@@ -1,4 +1,4 @@
-"""How long a joint state took to become a command, by the clocks of those who wrote them."""
+"""`Latency`: time from a joint state to its command, by source timestamps."""
 
 from array import array
 import heapq
@@ -6,27 +6,26 @@ import math
 
 import numpy as np
 
-# States that may be on their way at a time.
-REMEMBERED = 5000
+# States without an answer that are kept.
+HISTORY = 5000
 
 
 class Latency:
     """
-    Pairs every command with the state that caused it.
+    Pairs each command with the state that caused it.
 
-    A command has no stamp. But the node answers a state twice, first by the command and then,
-    from the same callback, on ~/gravity_torque with the stamp of the state: so the last command
-    written before an answer belongs to it. All times are those of the writers, s.
+    A command has no stamp. But the node answers a state twice: by the command, and then from the
+    same callback on ~/gravity_torque, with the stamp of the state. So the last command before an
+    answer belongs to the same state. All times are source timestamps, s.
 
     Attributes
     ----------
     values : array of float
-        From the state written to its command written, s.
+        From the writing of a state to that of its command, s.
 
     """
 
     def __init__(self):
-        """Know of nothing yet."""
         self.values = array('d')
         self._pending = []
         self._count = 0
@@ -35,19 +34,19 @@ class Latency:
         self._is_active = False
 
     def sent(self, time, stamp):
-        """Take a joint state with its stamp, ns."""
+        """Add a joint state with its stamp, ns."""
         self._take(time, 'sent', stamp)
 
     def command(self, time):
-        """Take a command."""
+        """Add a command."""
         self._take(time, 'command', None)
 
     def answer(self, time, stamp):
-        """Take a gravity torque with its stamp, ns."""
+        """Add a gravity torque with its stamp, ns."""
         self._take(time, 'answer', stamp)
 
     def state(self, time, name):
-        """Take a state of the output: only while it is ACTIVE a command answers every state."""
+        """Add an output state: only while ACTIVE a command answers every joint state."""
         self._take(time, 'state', name)
 
     def _take(self, time, kind, content):
@@ -55,18 +54,18 @@ class Latency:
         heapq.heappush(self._pending, (time, self._count, kind, content))
 
     def settle(self, until=math.inf):
-        """Look at what was written up to a time, s; all of it must have arrived."""
+        """Evaluate messages written up to a time, s; all of them have arrived."""
         while self._pending and self._pending[0][0] <= until:
             time, _, kind, content = heapq.heappop(self._pending)
             getattr(self, f'_on_{kind}')(time, content)
 
     def quantile(self, share):
-        """Return the latency that a share of all does not exceed, s; NaN if there is none."""
+        """Return a quantile of the latency, s; NaN without values."""
         return float(np.quantile(self.values, share)) if self.values else math.nan
 
     def _on_sent(self, time, stamp):
         self._sent.setdefault(stamp, time)
-        if len(self._sent) > REMEMBERED:
+        if len(self._sent) > HISTORY:
             del self._sent[next(iter(self._sent))]
 
     def _on_command(self, time, content):

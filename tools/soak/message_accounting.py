@@ -1,4 +1,4 @@
-"""Whether every joint state is accounted for."""
+"""`MessageAccounting`: every joint state is counted, and has its command."""
 
 from dataclasses import dataclass
 
@@ -6,14 +6,14 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class Account:
     """
-    What the node says about joint states, and what it was sent.
+    Counts of joint states at one time.
 
     Attributes
     ----------
     sent : int
-        States that the line has published.
+        States published by the relay.
     accepted, rejected, skipped : int
-        What the node says has become of them.
+        States counted by the node.
 
     """
 
@@ -23,60 +23,59 @@ class Account:
     skipped: int
 
     @property
-    def known(self):
-        """States of which the node says what became of them."""
+    def counted(self):
+        """All states counted by the node."""
         return self.accepted + self.rejected + self.skipped
 
 
-class Books:
+class MessageAccounting:
     """
-    Looks for states that were lost, and for states without a command.
+    Finds lost states, and states without a command.
 
     Attributes
     ----------
     sent : int
-        States that were looked at.
+        States in closed periods.
     missing : int
-        Those of which the node does not say what became of them.
+        States that the node has not counted.
     surplus : int
-        Those that it counts though nobody sent them.
+        States that the node has counted, but the relay has not sent.
     active : int
         States accepted while the output was ACTIVE.
     unanswered : int
-        Those to which no command was published, or several.
+        States without a command, or with several.
 
     """
 
     def __init__(self):
-        """Know of nothing yet."""
         self.sent = self.missing = self.surplus = self.active = self.unanswered = 0
         self._opened = None
         self._last = None
 
     def open(self, account):
-        """Begin with an account that was taken while the line was silent."""
+        """Begin a period with an account taken while the link was silent."""
         self._opened = account
 
     def close(self, account):
-        """Look at everything since `open`, by another account taken in silence."""
+        """End a period with another account taken in silence."""
         before, self._opened = self._opened, None
         sent = account.sent - before.sent
-        difference = sent - (account.known - before.known)
+        difference = sent - (account.counted - before.counted)
         self.sent += sent
         self.missing += max(difference, 0)
         self.surplus += max(-difference, 0)
 
     @property
     def is_open(self):
-        """Whether there was an `open` without a `close`."""
+        """Whether a period is open."""
         return self._opened is not None
 
     def diagnosed(self, state, accepted, commands):
         """
-        Take what one message of the diagnostics says, every one in its order.
+        Add one diagnostics message, in order.
 
-        They come on every change of the state; so between two of them that say ACTIVE it was
-        ACTIVE all the time, and every state that was accepted has had its command.
+        The node publishes diagnostics at every change of the state. Between two consecutive
+        messages with ACTIVE it was ACTIVE, and each accepted state had its command.
 
         Parameters
         ----------
@@ -89,7 +88,7 @@ class Books:
             self._last = None
             return
         if self._last is None:
-            # Said when the state changed: because of a state whose command follows right after.
+            # Published at the change of state, just before the command of the same joint state.
             self._last = (accepted, commands + 1)
             return
         states, answers = accepted - self._last[0], commands - self._last[1]

@@ -1,4 +1,4 @@
-"""The processes of the rig: those of the demo, which can also be hurt and looked into."""
+"""`RigProcesses`: processes that receive signals and are measured."""
 
 import os
 from pathlib import Path
@@ -8,10 +8,10 @@ from dynamics_node.demo.processes import Processes
 
 
 class RigProcesses(Processes):
-    """Starts, hurts, measures and ends processes by name."""
+    """Starts, signals, measures and ends processes by name."""
 
     def environment(self):
-        """Return the environment, in which this package is found too."""
+        """Return an environment in which Python finds this package."""
         environment = super().environment()
         folders = [str(Path(__file__).parents[1]), environment.get('PYTHONPATH', '')]
         return dict(environment, PYTHONPATH=os.pathsep.join(filter(None, folders)))
@@ -21,7 +21,7 @@ class RigProcesses(Processes):
         self._running[name].send_signal(number)
 
     def is_running(self, name):
-        """Tell whether a process was started and has not ended."""
+        """Return whether a process was started and has not ended."""
         return name in self._running and self._running[name].poll() is None
 
     def end(self, name, number=signal.SIGINT, timeout=10.0):
@@ -32,7 +32,7 @@ class RigProcesses(Processes):
 
     def vitals(self, name):
         """
-        Return what a process holds.
+        Return the resources of a process.
 
         Returns
         -------
@@ -49,7 +49,7 @@ class RigProcesses(Processes):
         }
 
     def __exit__(self, *error):
-        """End all processes; one that was stopped could not."""
+        """Continue stopped processes, and end all."""
         for process in self._running.values():
             if process.poll() is None:
                 process.send_signal(signal.SIGCONT)

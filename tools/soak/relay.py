@@ -1,8 +1,8 @@
 """
-The line as a process: robot/joint_states in, joint_states out, with a fault if one is asked for.
+The faulty link as a process, from robot/joint_states to joint_states: `python -m soak.relay`.
 
-Run as `python -m soak.relay`. The parameter `fault` is what `soak.line` knows. With a finite
-`clock_offset`, s, the stamps are moved by it, and /clock says the same time.
+The parameter `fault` is a key of `faulty_link.FAULTS`. A finite `clock_offset`, s, shifts all
+stamps, and /clock with them.
 
 """
 
@@ -21,17 +21,16 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-from .faulty_link import Line, shifted, stamp_of
+from .faulty_link import FaultyLink, shifted, stamp_of
 
 
 class Relay(Node):
-    """Passes joint states on, as bytes while nothing is wrong with them."""
+    """Forwards joint states, serialized while the link has no fault."""
 
     def __init__(self):
-        """Connect both sides."""
         super().__init__('relay')
-        self._line = Line(self.declare_parameter('seed', 0).value)
-        self.declare_parameter('fault', self._line.fault)
+        self._link = FaultyLink(self.declare_parameter('seed', 0).value)
+        self.declare_parameter('fault', self._link.fault)
         self.declare_parameter('clock_offset', math.nan)
         self.add_on_set_parameters_callback(self._set)
         self._offset = None
@@ -41,7 +40,7 @@ class Relay(Node):
         self.create_subscription(
             JointState, 'robot/joint_states', self._received, qos_profile_sensor_data, raw=True
         )
-        self.create_service(Trigger, '~/sent', self._say_sent)
+        self.create_service(Trigger, '~/sent', self._on_sent)
 
     def _received(self, data):
         if self._offset is not None:
@@ -51,8 +50,8 @@ class Relay(Node):
             self._clock_publisher.publish(clock)
         items = (
             [data]
-            if self._line.fault == 'none'
-            else self._line.out(deserialize_message(data, JointState))
+            if self._link.fault == 'none'
+            else self._link.out(deserialize_message(data, JointState))
         )
         for item in items:
             self._states.publish(item)
@@ -62,7 +61,7 @@ class Relay(Node):
         for parameter in parameters:
             try:
                 if parameter.name == 'fault':
-                    self._line.switch(parameter.value)
+                    self._link.switch(parameter.value)
                 elif parameter.name == 'clock_offset':
                     is_wanted = math.isfinite(parameter.value)
                     self._offset = round(parameter.value * 1e9) if is_wanted else None
@@ -70,7 +69,7 @@ class Relay(Node):
                 return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
-    def _say_sent(self, request, response):
+    def _on_sent(self, request, response):
         response.success, response.message = True, str(self._sent)
         return response
 

@@ -1,17 +1,17 @@
-"""What a soak has found: a table for people, and the verdict."""
+"""The table and the verdict of a soak."""
 
 import math
 
 from rich import box
 from rich.table import Table
 
-# Memory that a process may need more than after the warm-up without leaking, MB.
-MEMORY = 8.0
+# Growth of memory since the warm-up that is no leak, MB.
+MAX_GROWTH = 8.0
 
 
 def failures(soak, client):
     """
-    Return what was not as it has to be, one sentence each.
+    Return one sentence per failed expectation.
 
     Parameters
     ----------
@@ -24,41 +24,41 @@ def failures(soak, client):
     list of str
 
     """
-    judge, books = client.judge, soak.books
-    found = [
+    judge, accounting = client.judge, soak.accounting
+    sentences = [
         f'{name}: {failure}' for name, tally in soak.tallies.items() for failure in tally.failures
     ]
-    found += [f'command {text}' for text in judge.violations]
+    sentences += [f'command {text}' for text in judge.violations]
     if judge.count > len(judge.violations):
-        found.append(f'... and {judge.count - len(judge.violations)} more wrong commands')
-    if books.missing or books.surplus:
-        found.append(
-            f'of {books.sent} joint states, the node does not account for '
-            f'{books.missing} and counts {books.surplus} too many'
+        sentences.append(f'... and {judge.count - len(judge.violations)} more wrong commands')
+    if accounting.missing or accounting.surplus:
+        sentences.append(
+            f'of {accounting.sent} joint states, the node does not account for '
+            f'{accounting.missing} and counts {accounting.surplus} too many'
         )
-    if books.unanswered:
-        found.append(
-            f'of {books.active} joint states accepted while ACTIVE, {books.unanswered} '
+    if accounting.unanswered:
+        sentences.append(
+            f'of {accounting.active} joint states accepted while ACTIVE, {accounting.unanswered} '
             'had no command, or several'
         )
     published = client.number('output', 'commands')
     if judge.commands + judge.lost != published:
-        found.append(
+        sentences.append(
             f'the node says that it has published {published:.0f} commands, got '
             f'{judge.commands} and missed {judge.lost}'
         )
     if soak.before:
-        if soak.after['memory'] - soak.before['memory'] > MEMORY:
-            found.append(
+        if soak.after['memory'] - soak.before['memory'] > MAX_GROWTH:
+            sentences.append(
                 f'the memory of the node grew from {soak.before["memory"]:.1f} to '
-                f'{soak.after["memory"]:.1f} MB, expected at most {MEMORY:g} more'
+                f'{soak.after["memory"]:.1f} MB, expected at most {MAX_GROWTH:g} more'
             )
-        found += [
+        sentences += [
             f'the node had {soak.before[what]} {what} and has {soak.after[what]} now'
             for what in ('files', 'threads')
             if soak.after[what] > soak.before[what]
         ]
-    return found
+    return sentences
 
 
 def print_report(console, soak, client, seed):
@@ -77,16 +77,16 @@ def print_report(console, soak, client, seed):
 
 
 def _figures(soak, client):
-    judge, books, latency = client.judge, soak.books, soak.latency
+    judge, accounting, latency = client.judge, soak.accounting, soak.latency
     states = client.diagnostics['joint states']
     yield 'joint states accepted', states['accepted']
     for kind, count in sorted(soak.rejected.items()):
         yield f'  rejected: {kind}', str(count)
     yield '  skipped', states['skipped']
-    yield 'joint states sent, in the books', str(books.sent)
-    yield '  missing or counted twice', f'{books.missing} / {books.surplus}'
-    yield 'accepted while ACTIVE, in the books', str(books.active)
-    yield '  without a command', str(books.unanswered)
+    yield 'joint states sent, in accounted periods', str(accounting.sent)
+    yield '  missing or counted twice', f'{accounting.missing} / {accounting.surplus}'
+    yield 'accepted while ACTIVE, accounted', str(accounting.active)
+    yield '  without a command', str(accounting.unanswered)
     yield 'commands', client.diagnostics['output']['commands']
     yield '  judged, not seen', f'{judge.commands} / {judge.lost}'
     yield '  wrong', str(judge.count)
@@ -105,7 +105,7 @@ def _faults(soak):
     table.add_column('fault', no_wrap=True)
     table.add_column('injected', justify='right')
     table.add_column('survived', justify='right')
-    table.add_column('line paused by itself', justify='right')
+    table.add_column('link paused by itself', justify='right')
     for name, tally in soak.tallies.items():
         if tally.injected:
             table.add_row(name, str(tally.injected), str(tally.survived), str(tally.paused))

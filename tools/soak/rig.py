@@ -1,4 +1,4 @@
-"""Robot, relay and node in processes of their own, and somebody who looks after the arm."""
+"""`Rig`: robot, relay and node as processes, and an operator of the arm."""
 
 import functools
 import signal
@@ -11,45 +11,45 @@ from support.robots import ARM7
 from .arm_client import ArmClient
 from .processes import RigProcesses
 
-# Time for imports, compilation and discovery on a slow machine, s.
-START_UP = 90.0
-# As by default in the node, whose limits are those of the URDF: from zero to the limit, s.
-FULL_RATE = 0.1
-# An arm that stands so near its start pose need not be brought back, rad.
+# Timeout of imports, compilation and discovery on a slow machine, s.
+START_TIMEOUT = 90.0
+# From zero to the effort limit, s: the node's default rate limits.
+FULL_EFFORT_TIME = 0.1
+# Largest displacement at which the arm is not brought back to its start pose, rad.
 NEAR = 0.3
-# An arm that floats and is slower is at rest, rad/s.
+# Largest speed of an arm at rest, rad/s.
 AT_REST = 0.01
-# To enable: a machine that is busy enough to stop all may do so while the effort goes up.
+# Attempts to enable: a busy machine may cause a stop during the start ramp.
 ATTEMPTS = 5
 COMMAND_TOPIC = '/forward_effort_controller/commands'
 
 
 class Rig:
     """
-    The simulated arm on a line that can be faulty, held by the node.
+    The simulated arm behind a faulty link, held by the node.
 
     Attributes
     ----------
     client : ArmClient
     processes : RigProcesses
     arm : MujocoArm
-        For its joints and the start pose's sake; not the simulation.
+        For its joints and start pose; not the running simulation.
 
     """
 
     def __init__(self, rate=500.0, seed=0, urdf=ARM7, **parameters):
         """
-        Start everything, and wait until the node has a model and states.
+        Start all processes, and wait until the node has a model and states.
 
         Parameters
         ----------
         rate : float
-            Of the robot's joint states, Hz.
+            Rate of the joint states, Hz.
         seed : int
-            Of the relay's random faults.
+            Seed of the relay's random faults.
         urdf : pathlib.Path
         **parameters
-            Of the node.
+            Parameters of the node.
 
         """
         self.urdf_text = urdf.read_text()
@@ -63,16 +63,16 @@ class Rig:
         self._special = {}
         self.start_missing()
         limits = np.array([joint.effort for joint in self.arm.driven])
-        self.client = ArmClient(self.arm.driven_names, limits, limits / FULL_RATE)
+        self.client = ArmClient(self.arm.driven_names, limits, limits / FULL_EFFORT_TIME)
         try:
-            self.until(lambda: self.client.output == 'READY' and self.client.truth, START_UP)
+            self.until(lambda: self.client.output == 'READY' and self.client.truth, START_TIMEOUT)
         except BaseException:
             self.close()
             raise
         self.start_pose = self.client.state[0]
 
     def start_missing(self):
-        """Start what does not run: robot, line, node."""
+        """Start those of robot, relay and node that do not run."""
         if not self.processes.is_running('robot'):
             self.processes.start(
                 'robot',
@@ -93,7 +93,7 @@ class Rig:
             self.processes.start('node', 'dynamics_node.ros.main', '--ros-args', *arguments)
 
     def use_node(self, **special):
-        """Have a node with these parameters besides the rig's, the one that runs or a new one."""
+        """Use a node with these parameters besides the rig's; start a new one if they differ."""
         is_running = self.processes.is_running('node')
         if is_running and special == self._special:
             return
@@ -104,11 +104,11 @@ class Rig:
         self.client.forget_node()
         self._special = special
         self.start_missing()
-        self.until(lambda: self.client.output == 'READY', START_UP)
+        self.until(lambda: self.client.output == 'READY', START_TIMEOUT)
 
     def until_gone(self, count, topic):
-        """Wait until an ended process is forgotten by the others."""
-        self.until(lambda: count(topic) == 0, START_UP)
+        """Wait until the graph no longer contains an ended process."""
+        self.until(lambda: count(topic) == 0, START_TIMEOUT)
 
     def check_log(self, name):
         """Raise if a process has printed a traceback."""
@@ -120,18 +120,18 @@ class Rig:
         return self.client.until(condition, timeout=timeout)
 
     def during(self, seconds):
-        """Spin for a time."""
+        """Spin for a duration."""
         self.client.during(seconds)
 
     def catch(self):
-        """Engage the brakes, and bring the arm back if it has sunk far."""
+        """Engage the brakes; bring the arm back if it is far from its start pose."""
         self.until(functools.partial(self.client.set_brakes, True))
         if self.distance > NEAR:
             self.until(self.client.reset)
             self.until(functools.partial(self.client.set_brakes, True))
 
     def float(self):
-        """Whatever was before: have the arm float, without brakes and faults."""
+        """Bring the arm to floating, without brakes and faults, from any state."""
         self.client.settle()
         if self.client.output == 'ACTIVE':
             return
@@ -148,7 +148,7 @@ class Rig:
 
     def release(self):
         """Release the brakes of an arm that is held."""
-        # Before its efforts have arrived, it would begin to fall.
+        # Before its efforts arrive, the arm would begin to fall.
         self.until(lambda: self.client.is_held)
         assert self.client.set_brakes(False)
         self.during(0.03)
@@ -156,11 +156,11 @@ class Rig:
 
     @property
     def distance(self):
-        """How far the arm stands from its start pose, the largest of any joint, rad or m."""
+        """Largest displacement of any joint from the start pose, rad or m."""
         return np.abs(self.client.state[0] - self.start_pose).max()
 
     def enable(self, timeout=30.0):
-        """Enable the output, asking again until it is accepted: others need time to be gone."""
+        """Enable the output, repeatedly: other publishers take time to disappear."""
         end = time.monotonic() + timeout
         while True:
             changes = len(self.client.outputs)
@@ -172,7 +172,7 @@ class Rig:
         self.until(lambda: len(self.client.outputs) > changes or self.client.output == 'ACTIVE')
 
     def explain(self):
-        """Return what may be the cause of something unexpected, for an error message."""
+        """Return output state, gaps of the states and log, for an error message."""
         times = [time for time, _ in self.client.truth][-1000:]
         gap = np.diff(times).max(initial=0.0)
         output = self.client.outputs[-1] if self.client.outputs else None
@@ -191,7 +191,7 @@ class Rig:
         return self.client.outputs[-1].reason
 
     def close(self):
-        """End everything; raise if a process has printed a traceback."""
+        """End all processes; raise if one has printed a traceback."""
         self.client.close()
         names = ('robot', 'relay', 'node')
         for name in names:

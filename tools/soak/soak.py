@@ -1,4 +1,4 @@
-"""The soak itself: one fault after the other, at random moments, and the arm brought back."""
+"""`Soak`: random faults at random times, judged one by one."""
 
 from collections import Counter, deque
 from dataclasses import dataclass, field
@@ -10,30 +10,30 @@ from sensor_msgs.msg import JointState
 from .faults import FAULTS, STALE, STATE_TIMEOUT
 from .faulty_link import stamp_of
 from .latency import Latency
-from .message_accounting import Account, Books
+from .message_accounting import Account, MessageAccounting
 from .rig import NEAR
 
-# States of the line: some seconds, and a flood as well.
-REMEMBERED = 20_000
-# Calm between two faults, s.
+# Source timestamps of states: some seconds, also of a flood.
+HISTORY = 20_000
+# The pause between two faults, and its shortest and longest duration, s.
 CALM = 'none: calm'
 SHORTEST_CALM, LONGEST_CALM = 0.3, 2.0
-# For a fault to be noticed, and its stop to end, on a busy machine, s.
-NOTICED_WITHIN = 10.0
+# Timeout of detection and stop on a busy machine, s.
+FAULT_TIMEOUT = 10.0
 
 
 @dataclass
 class Tally:
     """
-    What one kind of fault has led to.
+    Results of one kind of fault.
 
     Attributes
     ----------
     injected, survived : int
     paused : int
-        How often the line was silent by itself meanwhile, see `Soak`.
+        Faults during which the link was silent without being told to, see `Soak`.
     failures : list of str
-        What was not as it has to be, for people.
+        One sentence per failed expectation.
 
     """
 
@@ -45,24 +45,23 @@ class Tally:
 
 class Soak:
     """
-    Hurts a rig at random and looks whether all stays as it has to be.
+    Injects random faults into a rig and checks the expectations.
 
-    A machine that is busy with other things may stop robot or line for longer than the node's
-    timeout. Then the node has to stop, too, and that is no failure of it; whether it was so tell
-    the times at which the line has written.
+    A busy machine may delay robot or link by more than the node's timeout. The node then has to
+    stop, which is no failure; the source timestamps of the link tell.
 
     Attributes
     ----------
     tallies : dict of Tally
-        By the name of the fault.
-    books : Books
+        By name of the fault.
+    accounting : MessageAccounting
     latency : Latency
     before, after : dict
-        Vitals of the node, see `RigProcesses.vitals`. `before` is when every kind of fault has
-        come once, because DDS keeps a buffer of the size of the largest message that it has
-        seen; a run that does not come so far has none.
+        Resources of the node, see `RigProcesses.vitals`. `before` is measured when every kind of
+        fault has come once, because DDS keeps a buffer of the size of the largest message; it
+        is empty after a shorter run.
     rejected : Counter
-        Joint states that the node has refused, by kind.
+        Joint states rejected by the node, by kind.
     duration : float
         s.
 
@@ -70,27 +69,27 @@ class Soak:
 
     def __init__(self, rig, rng, say):
         """
-        Listen to what is needed.
+        Subscribe to states and torques.
 
         Parameters
         ----------
         rig : Rig
         rng : random.Random
-            Decides what happens when.
+            Chooses faults and times.
         say : callable(str)
-            Told of every fault that did not go well.
+            Prints a line per failed fault.
 
         """
         self.tallies = {name: Tally() for name in [CALM, *(fault.name for fault in FAULTS)]}
-        self.books, self.latency = Books(), Latency()
+        self.accounting, self.latency = MessageAccounting(), Latency()
         self.before = self.after = {}
         self.rejected = Counter()
         self.duration = 0.0
         self._rig, self._client, self._rng, self._say = rig, rig.client, rng, say
         self._fresh, self._rounds = [], 0
-        self._written = deque(maxlen=REMEMBERED)
+        self._written = deque(maxlen=HISTORY)
         node, client = rig.client.node, rig.client
-        # As bytes, of which only the stamps are read: there are a thousand in a second.
+        # Serialized, for their stamps alone: they come at 1 kHz.
         node.create_subscription(
             JointState, 'joint_states', self._on_state, qos_profile_sensor_data, raw=True
         )
@@ -106,16 +105,16 @@ class Soak:
         client.on_diagnostics = self._on_diagnostics
 
     def run(self, seconds):
-        """Go on for a time, at least until one fault of it is over."""
+        """Inject faults for a duration, at least one."""
         rig, client = self._rig, self._client
         begin = time.monotonic()
         rig.float()
-        self._open_books()
+        self._open_accounting()
         rig.float()
         while time.monotonic() - begin < seconds:
             self._one_fault(self._choose())
             self._settle()
-        self._close_books()
+        self._close_accounting()
         rig.float()
         self.after = rig.processes.vitals('node')
         client.set_brakes(True)
@@ -133,7 +132,7 @@ class Soak:
         self.duration = time.monotonic() - begin
 
     def _choose(self):
-        # Every kind once before any comes again, but in no order that repeats.
+        # Every kind once per round, in random order.
         if not self._fresh:
             self._rounds += 1
             if self._rounds == 2:
@@ -145,8 +144,8 @@ class Soak:
     def _one_fault(self, fault):
         rig, client = self._rig, self._client
         self._calm()
-        if fault.breaks_books:
-            self._close_books()
+        if fault.breaks_accounting:
+            self._close_accounting()
             rig.float()
         tally = self.tallies[fault.name]
         tally.injected += 1
@@ -155,7 +154,7 @@ class Soak:
         with fault.inflict(rig):
             try:
                 if fault.stops:
-                    rig.until(lambda: client.output == 'FAULT', NOTICED_WITHIN)
+                    rig.until(lambda: client.output == 'FAULT', FAULT_TIMEOUT)
                     client.set_brakes(True)
                 else:
                     rig.during(self._rng.uniform(fault.longest / 3, fault.longest))
@@ -170,8 +169,8 @@ class Soak:
         is_pause = bool(failure) and self._has_paused(changes)
         rig.float()
         self._bring_back()
-        if fault.breaks_books:
-            self._open_books()
+        if fault.breaks_accounting:
+            self._open_accounting()
             rig.float()
         client.settle()
         if client.judge.count > accused:
@@ -179,7 +178,7 @@ class Soak:
         self._note(tally, fault.name, failure, is_pause)
 
     def _calm(self):
-        # What stops without a fault has to be explained, too.
+        # A stop without a fault needs an explanation, too.
         client, tally = self._client, self.tallies[CALM]
         tally.injected += 1
         changes = len(client.outputs)
@@ -189,12 +188,12 @@ class Soak:
             failure = f'expected ACTIVE, got {client.output}: {client.outputs[-1].reason}'
         self._note(tally, CALM, failure, bool(failure) and self._has_paused(changes))
         if failure:
-            self._rig.until(lambda: client.output == 'FAULT', NOTICED_WITHIN)
+            self._rig.until(lambda: client.output == 'FAULT', FAULT_TIMEOUT)
             self._rig.float()
 
     def _has_paused(self, changes):
-        # Of a stop for silence: whether the line was silent, and nobody had asked it to be. What
-        # was written shortly before the stop cannot have been read, so that does not count.
+        # Whether a stop for silence was caused by a silent link. States written shortly before
+        # the stop do not count: the node cannot have read them.
         client = self._client
         stops = [
             (time, output.reason)
@@ -211,7 +210,7 @@ class Soak:
     def _note(self, tally, name, failure, is_pause):
         if is_pause:
             tally.paused += 1
-            self._say(f'{self._client.now:.1f} s, {name}: the line paused by itself')
+            self._say(f'{self._client.now:.1f} s, {name}: the link paused by itself')
         elif failure:
             tally.failures.append(failure)
             self._say(f'{self._client.now:.1f} s, {name}: {failure}')
@@ -219,7 +218,7 @@ class Soak:
             tally.survived += 1
 
     def _bring_back(self):
-        # Pushed away again and again it would come to its limits.
+        # Repeated pushes would bring it to its position limits.
         if self._rig.distance > NEAR:
             self._rig.catch()
             self._rig.release()
@@ -228,15 +227,15 @@ class Soak:
         self._client.settle()
         self.latency.settle(self._client.now - 1.0)
 
-    # The books: in silence, because otherwise some states are on their way -------------------
+    # Accounting: while the link is silent, so that no state is in transit ---------------------
 
-    def _open_books(self):
+    def _open_accounting(self):
         self._rig.until(lambda: self._client.number('joint states', 'publishers') == 1, 60.0)
-        self.books.open(self._account())
+        self.accounting.open(self._account())
 
-    def _close_books(self):
-        if self.books.is_open:
-            self.books.close(self._account())
+    def _close_accounting(self):
+        if self.accounting.is_open:
+            self.accounting.close(self._account())
 
     def _account(self):
         client = self._client
@@ -264,7 +263,7 @@ class Soak:
         self.latency.answer(self._client.time_of(info['source_timestamp']), stamp_of(data))
 
     def _on_diagnostics(self, diagnostics):
-        self.books.diagnosed(
+        self.accounting.diagnosed(
             diagnostics['state machine']['state'],
             int(diagnostics['joint states'].get('accepted', 0)),
             int(diagnostics['output']['commands']),

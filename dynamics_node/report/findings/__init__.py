@@ -1,8 +1,8 @@
 """
-What is wrong with a robot or worth knowing, each with what it does to this robot.
+Findings: errors and oddities of a robot description, each with its effect on this robot.
 
-What may change here: what is looked for and where the lines are drawn. `kinds.py` lists every
-kind; docs/report.md explains them.
+What may change here: the checks and their thresholds. `kinds.py` lists every kind of finding;
+docs/report.md explains them.
 
 """
 

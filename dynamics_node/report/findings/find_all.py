@@ -1,37 +1,49 @@
-"""All findings of a robot, the worst first."""
+"""All findings of a robot, in descending severity."""
+
+from __future__ import annotations
 
 from dataclasses import replace
 
-from .case import Case
-from .coms import find_coms
-from .defaults import find_defaults
+from .centers_of_mass import find_distant_centers
+from .context import FindingContext
 from .joints import find_joints
-from .kinds import KINDS
+from .kinds import KINDS, PROBLEM
 from .limits import find_limits
 from .mass import find_masses
-from .matrix import find_matrix
-from .refusal import find_refusals
-from .tensors import find_tensors, mended_inertial
-from .tool import find_missing_tools
+from .mass_matrix import find_singular_mass_matrix
+from .missing_tool import find_missing_tools
+from .placeholders import find_placeholders
+from .tensors import find_tensors, with_absolute_values
 from .units import find_units
-from ..report import SEVERITIES
-from ..study import Study
+from ..report import Finding, Report, SEVERITIES
+from ..workspace_analysis import WorkspaceAnalysis
 from ...errors import RobotDescriptionError
+from ...urdf import PartialRead
 
-# These say already why D is not positive definite.
+# Kinds that explain why D is not positive definite.
 _SINGULAR = {'no_inertial', 'joint_moves_nothing'}
+# Refusals whose finding has a kind of its own, with its effect.
+_EXPLAINED_REFUSALS = ('mass is -', 'inertia is not physical')
+# Largest number of refusals with a finding each.
+_SEPARATE_REFUSALS = 3
+_REFUSAL_ADVICE = (
+    'fix it: RobotModel and the node refuse the description until then; if it is made from a '
+    '.xacro file, fix that file'
+)
 
 
-def find_all(report, examination, study):
+def find_all(
+    report: Report, examination: PartialRead, analysis: WorkspaceAnalysis | None
+) -> tuple[Finding, ...]:
     """
-    Judge a robot.
+    Run all checks.
 
     Parameters
     ----------
     report : Report
         Without findings.
-    examination : Examination
-    study : Study or None
+    examination : PartialRead
+    analysis : WorkspaceAnalysis or None
         None for a refused robot.
 
     Returns
@@ -40,42 +52,68 @@ def find_all(report, examination, study):
         Problems first, then warnings, then notes.
 
     """
-    if study is None and examination.is_whole:
-        study = _of_mended(report, examination)
-    case = Case(report, examination, study)
-    if not (study is not None and study.model.joint_names):
-        case = replace(case, study=None)
-    found = [
-        *find_refusals(case),
-        *find_masses(case),
-        *find_tensors(case),
-        *find_defaults(case),
-        *find_coms(case),
-        *find_missing_tools(case),
-        *find_joints(case),
-        *find_limits(case),
-        *find_units(case),
+    if analysis is None and examination.is_whole:
+        analysis = _with_possible_inertials(report, examination)
+    if analysis is not None and not analysis.model.joint_names:
+        analysis = None
+    context = FindingContext(report, examination, analysis)
+    findings = [
+        *find_refusals(context),
+        *find_masses(context),
+        *find_tensors(context),
+        *find_placeholders(context),
+        *find_distant_centers(context),
+        *find_missing_tools(context),
+        *find_joints(context),
+        *find_limits(context),
+        *find_units(context),
     ]
-    kinds = {finding.kind for finding in found}
-    found += find_matrix(case, bool(kinds & _SINGULAR))
-    if 'missing_gripper' in kinds:
-        found = _said_once(found)
+    kinds = {finding.kind for finding in findings}
+    findings += find_singular_mass_matrix(context, bool(kinds & _SINGULAR))
+    findings = _without_duplicate_grippers(findings)
     order = list(KINDS)
     return tuple(
         sorted(
-            found,
+            findings,
             key=lambda finding: (SEVERITIES.index(finding.severity), order.index(finding.kind)),
         )
     )
 
 
-def _of_mended(report, examination):
+def find_refusals(context: FindingContext) -> list[Finding]:
+    """Return a finding for each refusal that no other finding explains."""
+    reasons = list(context.report.refusals)
+    if context.examination.is_whole:
+        reasons = [
+            reason
+            for reason in reasons
+            if not any(words in reason for words in _EXPLAINED_REFUSALS)
+        ]
+    if len(reasons) > _SEPARATE_REFUSALS:
+        reasons = [f'{len(reasons)} reasons: ' + '; '.join(reasons)]
+    return [
+        Finding(
+            PROBLEM,
+            'refused',
+            (),
+            reason,
+            'nothing can be computed for this robot',
+            _REFUSAL_ADVICE,
+        )
+        for reason in reasons
+    ]
+
+
+def _with_possible_inertials(report: Report, examination: PartialRead) -> WorkspaceAnalysis | None:
+    # The effects of impossible inertials are computed with positive ones.
     links = tuple(
-        link if link.inertial is None else replace(link, inertial=mended_inertial(link.inertial))
+        link
+        if link.inertial is None
+        else replace(link, inertial=with_absolute_values(link.inertial))
         for link in examination.description.links
     )
     try:
-        return Study.begin(
+        return WorkspaceAnalysis.from_description(
             replace(examination.description, links=links),
             report.gravity,
             report.samples,
@@ -85,13 +123,16 @@ def _of_mended(report, examination):
         return None
 
 
-def _said_once(found):
-    # A gripper without mass is told as a gripper, not as a shape once more.
+def _without_duplicate_grippers(findings: list[Finding]) -> list[Finding]:
+    # A massless gripper is reported as a missing gripper, not also as a massless shape.
     grippers = {
-        name for finding in found if finding.kind == 'missing_gripper' for name in finding.subjects
+        name
+        for finding in findings
+        if finding.kind == 'missing_gripper'
+        for name in finding.subjects
     }
     return [
         finding
-        for finding in found
+        for finding in findings
         if not (finding.kind == 'shape_without_mass' and set(finding.subjects) <= grippers)
     ]

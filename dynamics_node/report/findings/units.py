@@ -1,37 +1,43 @@
-"""Limits that are in degrees, or that no motor of this robot has."""
+"""Limits in degrees, and effort limits that exceed any motor of the robot."""
+
+from __future__ import annotations
 
 from dataclasses import replace
 import math
 
 import numpy as np
 
-from .effects import Effect, NOTHING, unit_of
-from .hit import Hit, told
+from .context import FindingContext
+from .effects import Effect, NEGLIGIBLE, unit_of
+from .grouping import group_findings, Occurrence
 from .kinds import NOTE, WARNING
-from .words import kilograms, listed, number
-from ..report import Finding
-from ..sampling import sample_positions
+from ..formatting import enumeration, kilograms, plain_number
+from ..report import Finding, JointEntry
+from ..workspace_analysis import sample_positions
 
-# Beyond so many rad a joint makes more than two turns; up to so many, they may be degrees.
-_TURNS, _DEGREES = 5.0 * math.pi, 720.0
-# So many joints are told one by one.
-_SHOWN = 4
-# So many times the torque of the whole robot, hung up at its full reach, is no motor of it; or so
-# many times its weight, where a joint slides.
-_TORQUES, _FORCES = 10.0, 100.0
-# Beyond so many times of that no limit was meant at all.
-_NONE_MEANT = 100.0
-
-
-def find_units(case):
-    """Return limits that are likely in another unit, or a default."""
-    return [*_in_degrees(case), *_without_meaning(case)]
+# Position limit above which a joint makes more than two turns, rad.
+_TURNS = 5.0 * math.pi
+# Largest position limit that may be in degrees.
+_DEGREES = 720.0
+# Number of joints that are described one by one.
+_NAMED = 4
+# Implausible effort limit, in units of the robot's weight times its reach.
+_TORQUES = 10.0
+# Implausible effort limit of a prismatic joint, in units of the robot's weight.
+_FORCES = 100.0
+# Multiple of these limits above which no real limit is intended.
+_UNINTENDED = 100.0
 
 
-def _in_degrees(case):
+def find_units(context: FindingContext) -> list[Finding]:
+    """Return limits that are probably in another unit, or defaults."""
+    return [*_in_degrees(context), *_too_large_efforts(context)]
+
+
+def _in_degrees(context: FindingContext) -> list[Finding]:
     joints = [
         joint
-        for joint in case.report.joints
+        for joint in context.report.joints
         if joint.kind == 'revolute'
         and joint.mimics is None
         and math.isfinite(joint.upper - joint.lower)
@@ -39,12 +45,12 @@ def _in_degrees(case):
     beyond = [
         joint for joint in joints if _TURNS < max(abs(joint.lower), abs(joint.upper)) <= _DEGREES
     ]
-    # One joint of many that turns for ever is often written so.
+    # A single joint with many turns among others is often an endless one.
     if not beyond or 2 * len(beyond) < len(joints):
         return []
-    shown = [
-        f"'{joint.name}' ({number(joint.lower)} to {number(joint.upper)} rad)"
-        for joint in beyond[:_SHOWN]
+    texts = [
+        f"'{joint.name}' ({plain_number(joint.lower)} to {plain_number(joint.upper)} rad)"
+        for joint in beyond[:_NAMED]
     ]
     first = beyond[0]
     return [
@@ -53,83 +59,82 @@ def _in_degrees(case):
             'limits_in_degrees',
             tuple(joint.name for joint in beyond),
             'position limits of many turns, which look like degrees: '
-            f'{listed(shown, len(beyond))}',
-            _radian_effect(case, joints),
+            f'{enumeration(texts, len(beyond))}',
+            _radian_effect(context, joints),
             f'URDF has radians: \'{first.name}\' lower="{math.radians(first.lower):.5g}" '
-            f'upper="{math.radians(first.upper):.5g}"; or make joints without end continuous',
+            f'upper="{math.radians(first.upper):.5g}"; or make endless joints continuous',
         )
     ]
 
 
-def _radian_effect(case, joints):
-    if case.study is None:
+def _radian_effect(context: FindingContext, joints: list[JointEntry]) -> str:
+    analysis = context.analysis
+    if analysis is None:
         return ''
-    study, ranges = case.study, case.study.ranges.copy()
+    ranges, names = analysis.ranges.copy(), analysis.model.joint_names
     for joint in joints:
-        index = study.model.joint_names.index(joint.name)
-        ranges[index] = math.radians(joint.lower), math.radians(joint.upper)
-    meant = replace(
-        study,
+        ranges[names.index(joint.name)] = math.radians(joint.lower), math.radians(joint.upper)
+    converted = replace(
+        analysis,
         ranges=ranges,
-        positions=sample_positions(ranges, len(study.positions), case.report.seed),
+        positions=sample_positions(ranges, len(analysis.positions), context.report.seed),
     )
     pairs = [
-        (abs(before[1]), abs(after[1]))
-        for before, after in zip(study.worst, meant.worst, strict=True)
+        (abs(before), abs(after))
+        for (_, before), (_, after) in zip(analysis.worst, converted.worst, strict=True)
     ]
     index = max(range(len(pairs)), key=lambda i: abs(pairs[i][0] - pairs[i][1]))
     before, after = pairs[index]
-    if abs(after - before) <= NOTHING * max(before, after):
+    if abs(after - before) <= NEGLIGIBLE * max(before, after):
         return (
-            'if they are degrees, no largest gravity torque changes, but nothing stops the '
-            'joints where the real ones end'
+            'if they are degrees, no largest gravity torque changes, but the joints do not stop '
+            'at the ends of the real ones'
         )
-    name = study.model.joint_names[index]
-    unit = unit_of(case, name)
+    unit = unit_of(context, names[index])
     return (
-        f"the largest gravity torque of joint '{name}', {number(before)} {unit}, is at a "
-        f'position that it never has: {number(after)} {unit} if they are degrees'
+        f"the largest gravity torque of joint '{names[index]}', {plain_number(before)} {unit}, is "
+        f'at a position that it never reaches: {plain_number(after)} {unit} if they are degrees'
     )
 
 
-def _without_meaning(case):
-    joints = [joint for joint in case.report.joints if joint.mimics is None]
-    weight = case.moving_mass * float(np.linalg.norm(case.report.gravity))
-    if case.study is None or not weight > 0.0:
+def _too_large_efforts(context: FindingContext) -> list[Finding]:
+    weight = context.moving_mass * float(np.linalg.norm(context.report.gravity))
+    if context.analysis is None or not weight > 0.0:
         return []
-    most = {'N m': _TORQUES * weight * case.reach, 'N': _FORCES * weight}
-    hits = [
-        Hit(
-            WARNING if joint.effort > _NONE_MEANT * most[joint.effort_unit] else NOTE,
-            'effort_limit_too_large',
-            joint.name,
-            f"joint '{joint.name}' has an effort limit of {number(joint.effort)} "
-            f'{joint.effort_unit}, in a robot of {kilograms(case.moving_mass)} that reaches '
-            f'{number(case.reach)} m: no motor of it has that',
-            f'{number(joint.effort)} {joint.effort_unit}',
-            _hides(joint),
-            'write what the motor can do behind the gear, <limit effort="..."/>, or tell the '
-            'node: parameter effort_limits',
-            0.0 if joint.gravity is None else joint.gravity.magnitude,
-        )
-        for joint in joints
-        if 0.0 < most[joint.effort_unit] < joint.effort
+    largest = {'N m': _TORQUES * weight * context.reach, 'N': _FORCES * weight}
+    occurrences = [
+        _too_large_effort(context, joint, largest[joint.effort_unit])
+        for joint in context.report.joints
+        if joint.mimics is None and 0.0 < largest[joint.effort_unit] < joint.effort
     ]
-    return told(
-        hits, lambda count: f'{count} joints have an effort limit that no motor of this robot has'
+    return group_findings(
+        occurrences,
+        lambda count: f'{count} joints have an effort limit that exceeds any motor of this robot',
     )
 
 
-def _hides(joint):
-    asked = (
+def _too_large_effort(context: FindingContext, joint: JointEntry, largest: float) -> Occurrence:
+    limit = f'{plain_number(joint.effort)} {joint.effort_unit}'
+    magnitude = 0.0 if joint.gravity is None else joint.gravity.magnitude
+    gravity = (
         ''
         if joint.gravity is None
-        else (
-            f'gravity asks at most {number(joint.gravity.magnitude)} {joint.effort_unit} of it; '
-        )
+        else f'gravity needs at most {plain_number(magnitude)} {joint.effort_unit} of it; '
     )
-    return Effect(
-        f'{asked}shares and payloads that are computed with this limit mean nothing, '
-        'and the node lets nearly any command through there',
-        math.nan,
+    return Occurrence(
+        WARNING if joint.effort > _UNINTENDED * largest else NOTE,
+        'effort_limit_too_large',
+        joint.name,
+        f"joint '{joint.name}' has an effort limit of {limit}, in a robot of "
+        f'{kilograms(context.moving_mass)} that reaches {plain_number(context.reach)} m: it '
+        'exceeds any motor of such a robot',
+        limit,
+        Effect(
+            f'{gravity}shares and payloads that are computed with this limit mean nothing, and '
+            'the node limits hardly any command there',
+            math.nan,
+        ),
+        'write the effort of the motor behind the gear, <limit effort="..."/>, or set the '
+        'parameter effort_limits of the node',
+        magnitude,
     )

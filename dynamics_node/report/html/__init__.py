@@ -1,11 +1,11 @@
 """
-The model report as a page: one file with tables, plots and a robot that can be turned.
+The model report as a page: one file with tables, plots and a 3D view of the robot.
 
-What may change here: how the report is shown. What is shown is decided one room up. The page asks
-the network for nothing; everything from a description goes through `escape`.
+What may change here: how the report is shown, not its content. The page requests nothing from the
+network. Jinja2 escapes every text in the templates; `plots.plot_text` escapes texts for plotly.
 
 """
 
-from .document import page, write_html
+from .page import page, write_html
 
 __all__ = ['page', 'write_html']

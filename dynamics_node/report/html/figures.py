@@ -1,18 +1,20 @@
-"""All that the page draws, as one piece of plain data."""
+"""All figures of the page and the 3D view as one piece of plain data."""
 
-from .escape import plot_text
-from .numbers import number, vector
-from .plot_curve import curve_figure, histogram_figure
-from .plot_distribution import distribution_figure
-from .plot_mass import mass_figure
-from .plot_worst import worst_figure
-from .poses import poses
-from .scene import scene
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from .joint_plots import curve_figure, histogram_figure
+from .plots import distribution_figure, gravity_of, mass_figure, plot_text, worst_figure
+from .scene import poses, scene
+from ..formatting import number, vector
+from ..report import JointEntry, Report
 
 
-def page_data(report):
+def page_data(report: Report) -> dict[str, Any] | None:
     """
-    Return what the scripts of the page draw.
+    Return the data that the scripts of the page draw.
 
     Parameters
     ----------
@@ -21,14 +23,14 @@ def page_data(report):
     Returns
     -------
     dict or None
-        `figures` and `arm`; None if there is nothing to draw: a refused robot, or one without
-        movable joints.
+        `figures` and `arm`; None without figures: for a refused robot, or one without movable
+        joints.
 
     """
-    loads = {joint.name: joint for joint in report.joints if joint.gravity is not None}
-    if report.model is None or not loads:
+    by_name = {joint.name: joint for joint in report.joints if joint.gravity is not None}
+    if report.model is None or not by_name:
         return None
-    joints = [loads[name] for name in report.joint_names]
+    joints = [by_name[name] for name in report.joint_names]
     return {
         'figures': {
             'worst': worst_figure(joints),
@@ -36,10 +38,10 @@ def page_data(report):
             'mass': mass_figure(report.bodies),
             'joint': {
                 'names': [joint.name for joint in joints],
-                'first': _first(joints),
+                'first': _most_loaded(joints),
                 'curves': [
-                    curve_figure(joint, joint.gravity.position[place])
-                    for place, joint in enumerate(joints)
+                    curve_figure(joint, gravity_of(joint).position[index])
+                    for index, joint in enumerate(joints)
                 ],
                 'histograms': [histogram_figure(joint) for joint in joints],
             },
@@ -59,11 +61,10 @@ def page_data(report):
     }
 
 
-def _first(joints):
-    """Return the place of the joint nearest to its limit, or of that with the largest torque."""
+def _most_loaded(joints: Sequence[JointEntry]) -> int:
+    # The index of the joint nearest to its limit, or else of that with the largest torque.
+    def load(index: int) -> tuple[float, float]:
+        gravity = gravity_of(joints[index])
+        return (gravity.share if gravity.share == gravity.share else -1.0, gravity.magnitude)
 
-    def strain(place):
-        load = joints[place].gravity
-        return (load.share if load.share == load.share else -1.0, load.magnitude)
-
-    return max(range(len(joints)), key=strain)
+    return max(range(len(joints)), key=load)

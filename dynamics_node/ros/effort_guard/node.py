@@ -154,7 +154,7 @@ class EffortGuardNode(Node):
     @logged
     def _look(self):
         try:
-            output = self.guard.look(time.monotonic())
+            output = self.guard.tick(time.monotonic())
             if output is not None:
                 self._publish(output)
         finally:

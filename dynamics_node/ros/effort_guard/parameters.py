@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..parameters.declaration import DOUBLE, DOUBLES, Parameter, ParameterError, TEXT
+from collections.abc import Mapping
+from typing import Any
+
+from ..parameters.declaration import check_each, DOUBLE, DOUBLES, Parameter, ParameterError, TEXT
 from ...safety.effort_guard import GuardSettings
 
 GUARD_PARAMETERS = (
@@ -27,9 +30,8 @@ GUARD_PARAMETERS = (
         'timeout',
         DOUBLE,
         GuardSettings.timeout,
-        'Longest time without a command while '
-        'an effort is in force, s. At least three periods of the commands, which come with '
-        'the joint states',
+        'Longest time without a command while an effort is in force, s. At least three periods '
+        'of the commands, which come with the joint states',
         read_only=True,
         low=0.01,
         high=1.0,
@@ -47,9 +49,9 @@ GUARD_PARAMETERS = (
         'rate_limits',
         DOUBLES,
         (),
-        'Largest change of effort per joint while it fades, '
-        'N m/s or N/s, in the order of the commands; a fade takes longer than stop_ramp '
-        'where they require it, 10 s at most. Empty: none',
+        'Largest change of effort per joint while it fades, N m/s or N/s, in the order of the '
+        'commands; a fade takes longer than stop_ramp where they require it, 10 s at most. '
+        'Empty: none',
         read_only=True,
         low=0.0,
         low_open=True,
@@ -58,8 +60,8 @@ GUARD_PARAMETERS = (
         'effort_limits',
         DOUBLES,
         (),
-        'Largest effort per joint, N m or N. Commands above '
-        'it are clamped, and those that begin above a tenth of it do not pass. Empty: none',
+        'Largest effort per joint, N m or N. Commands above it are clamped, and commands that '
+        'begin above a tenth of it do not pass. Empty: none',
         read_only=True,
         low=0.0,
         low_open=True,
@@ -84,15 +86,10 @@ def check_all(given: Mapping[str, Any]) -> dict[str, Any]:
     Raises
     ------
     ParameterError
-        With every problem, one sentence each.
+        Lists every problem, one sentence each.
 
     """
-    checked, problems = {}, []
-    for parameter in GUARD_PARAMETERS:
-        try:
-            checked[parameter.name] = parameter.check(given.get(parameter.name, parameter.default))
-        except ParameterError as error:
-            problems.append(str(error))
+    checked, problems = check_each(GUARD_PARAMETERS, given)
     rates, limits = (checked.get(name, ()) for name in ('rate_limits', 'effort_limits'))
     if rates and limits and len(rates) != len(limits):
         problems.append(

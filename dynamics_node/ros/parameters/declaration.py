@@ -1,17 +1,19 @@
-"""One parameter of a table: its kind, its default, which values it takes and what it says."""
+"""One parameter: kind, default, accepted values and description; and its declaration in ROS."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
 from typing import Any
 
 from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 
+from ...errors import ParameterError
+
 DOUBLE, DOUBLES, TEXT, TEXTS, FLAG = 'double', 'double[]', 'string', 'string[]', 'bool'
-
-
-class ParameterError(ValueError):
-    """A parameter value is refused; the message says what is expected and what came."""
 
 
 @dataclass(frozen=True)
@@ -25,17 +27,19 @@ class Parameter:
         Kind is one of double, double[], string, string[], bool.
     default : Any
     description : str
-        With the unit; what an empty value means.
+        With the unit, and the meaning of an empty value.
     read_only : bool
-        Whether it can be set only at start-up.
+        Whether it can be set only at the start.
     low, high : float
-        Range of every number, both ends allowed; `low_open` leaves out the lower end.
+        Range of every number, both ends allowed; `low_open` excludes the lower end.
     choices : tuple of str
-        Allowed values of a text.
+        Allowed values of a string.
     length : int or None
-        How many numbers an array must have; None for any.
+        Required length of an array; None for any.
+    per_joint : bool
+        Whether an array has one number per chosen joint, or is empty.
     takes_one : bool
-        Whether one number may stand for an array: for all joints.
+        Whether a single number is accepted for all joints.
 
     """
 
@@ -47,23 +51,24 @@ class Parameter:
     low: float = -math.inf
     high: float = math.inf
     low_open: bool = False
-    choices: tuple = ()
+    choices: tuple[str, ...] = ()
     length: int | None = None
+    per_joint: bool = False
     takes_one: bool = False
 
-    def check(self, value):
+    def check(self, value: Any) -> Any:
         """
         Return a value in the kind of this parameter.
 
         Parameters
         ----------
         value : Any
-            What ROS delivers: bool, int, float, str or a sequence of one of them.
+            From ROS: bool, int, float, str or a sequence of one of them.
 
         Returns
         -------
         bool, float, str or tuple
-            Integers are taken for doubles, as people write them.
+            Integers are accepted as doubles.
 
         Raises
         ------
@@ -80,8 +85,8 @@ class Parameter:
         }
         return convert[self.kind](value)
 
-    def constraints(self):
-        """Return in words which values are accepted; '' if the kind says it all."""
+    def constraints(self) -> str:
+        """Return the accepted values in words; '' if every value of the kind is accepted."""
         if self.choices:
             return 'one of ' + ', '.join(self.choices)
         return self._range() if self.kind in (DOUBLE, DOUBLES) else ''
@@ -98,16 +103,14 @@ class Parameter:
         if math.isinf(self.low) and math.isinf(self.high):
             return 'a finite number'
         low = f'{">" if self.low_open else ">="} {self.low:g}'
-        return (
-            f'a finite number {low}'
-            if math.isinf(self.high)
-            else f'a number {low} and <= {self.high:g}'
-        )
+        if math.isinf(self.high):
+            return f'a finite number {low}'
+        return f'a number {low} and <= {self.high:g}'
 
     def _numbers(self, value):
         if self.takes_one and isinstance(value, (int, float)):
             value = (value,)
-        if isinstance(value, (str, bytes)) or not hasattr(value, '__len__'):
+        if not _is_list(value):
             raise self._error('a list of numbers', value)
         if self.length is not None and len(value) != self.length:
             raise self._error(f'{self.length} numbers', value)
@@ -121,7 +124,7 @@ class Parameter:
         return value
 
     def _texts(self, value):
-        if isinstance(value, (str, bytes)) or not hasattr(value, '__len__'):
+        if not _is_list(value):
             raise self._error('a list of texts', value)
         if not all(isinstance(item, str) and item for item in value):
             raise self._error('a list of texts that are not empty', value)
@@ -133,9 +136,39 @@ class Parameter:
         return value
 
     def _error(self, expected, value):
-        is_list = hasattr(value, '__len__') and not isinstance(value, (str, bytes))
-        text = repr(list(value)) if is_list else repr(value)
+        text = repr(list(value)) if _is_list(value) else repr(value)
         return ParameterError(f'{self.name}: expected {expected}, got {text[:80]}')
+
+
+def check_each(
+    parameters: Sequence[Parameter], values: Mapping[str, Any]
+) -> tuple[dict[str, Any], list[str]]:
+    """
+    Check the value of every parameter by itself.
+
+    Parameters
+    ----------
+    parameters : sequence of Parameter
+    values : mapping of str to Any
+        Name → value from ROS; a missing name gets its default.
+
+    Returns
+    -------
+    checked : dict of str to Any
+        Name → value of its kind, without the wrong ones.
+    problems : list of str
+        One sentence per wrong value.
+
+    """
+    checked, problems = {}, []
+    for parameter in parameters:
+        try:
+            checked[parameter.name] = parameter.check(
+                values.get(parameter.name, parameter.default)
+            )
+        except ParameterError as error:
+            problems.append(str(error))
+    return checked, problems
 
 
 _TYPES = {
@@ -147,7 +180,7 @@ _TYPES = {
 }
 
 
-def declare(node, parameters):
+def declare(node: Node, parameters: Sequence[Parameter]) -> dict[str, Any]:
     """
     Declare parameters with their descriptions and defaults.
 
@@ -159,7 +192,7 @@ def declare(node, parameters):
     Returns
     -------
     dict of str to Any
-        Name → value from the command line or a file, not checked yet; only those that are given.
+        Name → unchecked value from the command line or a file; only the given ones.
 
     """
     given = {}
@@ -167,24 +200,24 @@ def declare(node, parameters):
         name = parameter.name
         value = node.declare_parameter(name, None, _descriptor(parameter)).value
         if value is None:
-            # Set after declaring: only so an empty list keeps the type of its elements.
+            # Set after the declaration: only then an empty list keeps the type of its elements.
             node.set_parameters([ros_parameter(parameter, parameter.default)])
         else:
             given[name] = value
-        # A read-only parameter could not have been set above.
+        # Read-only last: a read-only parameter could not be set above.
         node.set_descriptor(name, _descriptor(parameter, parameter.read_only))
     return given
 
 
-def ros_parameter(parameter, value):
+def ros_parameter(parameter: Parameter, value: Any) -> RosParameter:
     """
-    Return a value of a parameter as rclpy sets it.
+    Return a value as a parameter of rclpy.
 
     Parameters
     ----------
     parameter : Parameter
     value : bool, float, str or tuple
-        In the parameter's kind.
+        In the kind of the parameter.
 
     Returns
     -------
@@ -195,9 +228,13 @@ def ros_parameter(parameter, value):
     return RosParameter(parameter.name, _TYPES[parameter.kind], value)
 
 
+def _is_list(value):
+    return hasattr(value, '__len__') and not isinstance(value, (str, bytes))
+
+
 def _descriptor(parameter, read_only=False):
-    # Dynamic typing, because rcl refuses [87, 12] for a double array by an exception; the
-    # table's own check takes integers and says what is wrong with the rest.
+    # Dynamic typing: rcl raises an exception for [87, 12] in a double array. `Parameter.check`
+    # accepts integers and gives the reason for every refusal.
     return ParameterDescriptor(
         description=parameter.description,
         read_only=read_only,

@@ -1,9 +1,21 @@
-"""Which changes of model and limits may reach an arm that the output holds."""
+"""Checks of a change of model or limits while the output holds the arm."""
+
+from collections.abc import Mapping
+from typing import Any
 
 from .table import ParameterError
+from ...dynamics import RobotModel
+from ...safety import GravityChange
 
 
-def check_change(robot, model, values, before, gravity_change, now):
+def check_change(
+    robot: Any,
+    model: RobotModel,
+    values: Mapping[str, Any],
+    before: Mapping[str, Any],
+    gravity_change: GravityChange,
+    now: float,
+) -> None:
     """
     Refuse a change that would throw or drop the arm while the output is on.
 
@@ -12,11 +24,11 @@ def check_change(robot, model, values, before, gravity_change, now):
     robot : ActiveRobot
         With the model and the state in force.
     model : RobotModel
-        As it would become.
-    values, before : dict of str to Any
-        Of the parameters, as they would become and as they are.
+        The model after the change.
+    values, before : mapping of str to Any
+        Parameter values after and before the change.
     gravity_change : GravityChange
-        What gravity has done since the output was enabled.
+        Changes of gravity since the output was enabled.
     now : float
         Steady clock, s.
 
@@ -24,8 +36,7 @@ def check_change(robot, model, values, before, gravity_change, now):
     ------
     ParameterError
         If a chosen joint would have no effort limit, a limit would be above the URDF's, gravity
-        would point up or turn too fast, or gravity torque would bring a joint to its limit that
-        is not there yet.
+        would point up or turn too fast, or gravity torque would bring another joint to its limit.
 
     """
     unlimited = robot.unlimited_joints(values['effort_limits'])
@@ -43,7 +54,7 @@ def check_change(robot, model, values, before, gravity_change, now):
     if values['gravity'] != before['gravity']:
         _check_gravity(values, gravity_change, now)
     if model is robot.model and values['effort_scale'] == before['effort_scale']:
-        return  # lower limits are always possible
+        return  # lower limits are always accepted
     over = robot.over_limits(values, model, before)
     if over:
         raise ParameterError(

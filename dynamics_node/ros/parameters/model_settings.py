@@ -1,18 +1,22 @@
 """From parameters to the model in force: gravity, payload, rotors and friction."""
 
-import numpy as np
+from collections.abc import Mapping, Sequence
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ...dynamics import RobotModel
 from ...dynamics.arguments import check_link
 from ...dynamics.friction import SMOOTHING_VELOCITY
 
-# ixx ixy ixz iyy iyz izz, as in geometry_msgs/Inertia, by row and column of the tensor.
+# Row and column of the tensor → index in ixx, ixy, ixz, iyy, iyz, izz (geometry_msgs/Inertia).
 _TENSOR = ([0, 1, 2], [1, 3, 4], [2, 4, 5])
-PER_JOINT = ('rotor_inertia', 'friction.viscous', 'friction.coulomb')
 
 
-def tensor(six):
+def tensor(six: Sequence[float]) -> NDArray[np.float64]:
     """
-    Return the inertia tensor of its six numbers.
+    Return an inertia tensor from its six numbers.
 
     Parameters
     ----------
@@ -27,17 +31,19 @@ def tensor(six):
     return np.array(six, dtype=float)[np.array(_TENSOR)]
 
 
-def configured(robot, values, before=None):
+def configured(
+    robot: Any, values: Mapping[str, Any], before: Mapping[str, Any] | None = None
+) -> RobotModel:
     """
-    Return a robot's model as the parameters say.
+    Return the model of a robot with the parameters applied.
 
     Parameters
     ----------
     robot : ActiveRobot
-    values : dict of str to Any
-        Of the parameters; arrays per joint are in the order of the chosen joints.
-    before : dict of str to Any, optional
-        Those that the robot's model was made with: only what differs is done anew.
+    values : mapping of str to Any
+        Parameter values; arrays per joint are in the order of the chosen joints.
+    before : mapping of str to Any, optional
+        Parameter values of the present model: only the differences are applied.
 
     Returns
     -------
@@ -46,7 +52,7 @@ def configured(robot, values, before=None):
     Raises
     ------
     DynamicsError
-        If the payload's link is unknown or no real body has its inertia.
+        If the link of the payload is unknown or its inertia is not physical.
 
     """
 
@@ -87,7 +93,7 @@ def _friction(robot, values):
 
 
 def _of_all(robot, chosen, others):
-    # One number per joint of the model: for the chosen joints those given, if any are.
+    # One number per joint of the model; `chosen` may be empty.
     numbers = np.array(np.broadcast_to(others, (len(robot.model.joint_names),)))
     if chosen:
         numbers[robot.selection.index] = chosen

@@ -1,8 +1,11 @@
-"""Parameters of the node: declared from the table, checked before they are taken."""
+"""Parameters of the node: declared from the table, checked before they take effect."""
 
+from collections.abc import Callable, Mapping
 import difflib
+from typing import Any
 
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.node import Node
 
 from .declaration import declare, ros_parameter
 from .table import check_all, ParameterError, PARAMETERS
@@ -12,16 +15,16 @@ from ..support.throttling import Throttle
 
 class Parameters:
     """
-    The node's parameter values: always complete, always checked.
+    The parameter values of the node: always complete, always checked.
 
     Attributes
     ----------
     values : dict of str to Any
-        In force now; replaced as a whole, never changed in place.
+        In force; replaced as a whole, never changed in place.
 
     """
 
-    def __init__(self, node):
+    def __init__(self, node: Node) -> None:
         """
         Declare all parameters.
 
@@ -32,7 +35,7 @@ class Parameters:
         Raises
         ------
         ParameterError
-            If an override from the command line or a file is refused.
+            If a value from the command line or a file is refused.
 
         """
         self._node = node
@@ -41,14 +44,18 @@ class Parameters:
         self.values = check_all(declare(node, PARAMETERS))
         self._warn_of_misspelled()
 
-    def watch(self, on_change, further_check):
+    def watch(
+        self,
+        on_change: Callable[[dict[str, Any], dict[str, Any]], None],
+        further_check: Callable[[dict[str, Any]], None],
+    ) -> None:
         """
         Accept changes at run time from now on.
 
         Parameters
         ----------
         on_change : callable(dict, dict)
-            Called after some were set, with all values and those before.
+            Called after a change with all values and the values before.
         further_check : callable(dict)
             Raises ParameterError for values that do not fit the robot.
 
@@ -57,23 +64,23 @@ class Parameters:
         self._node.add_on_set_parameters_callback(self._check)
         self._node.add_post_set_parameters_callback(self._take)
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Any:
         """Return the value in force."""
         return self.values[name]
 
-    def set(self, values):
+    def set(self, values: Mapping[str, Any]) -> None:
         """
-        Set some parameters together, as if somebody had done it from outside.
+        Set several parameters together, with the same checks as the ROS parameter services.
 
         Parameters
         ----------
-        values : dict of str to Any
+        values : mapping of str to Any
             Name → value in its kind.
 
         Raises
         ------
         ParameterError
-            If they are refused; nothing has changed then.
+            If a value is refused; then none has changed.
 
         """
         kinds = {parameter.name: parameter for parameter in PARAMETERS}
@@ -84,9 +91,11 @@ class Parameters:
             raise ParameterError(result.reason)
 
     def _warn_of_misspelled(self):
-        # ROS ignores a name that nobody declares; an `effort_limit` would then be no limit.
+        # ROS ignores undeclared names: `effort_limit` would set no limit. rclpy has no public
+        # list of the given names, except by declaring all of them, which would make each a
+        # parameter of this node. Without the private list there is no warning, nothing else.
         names = [parameter.name for parameter in PARAMETERS]
-        given = getattr(self._node, '_parameter_overrides', {})  # the only place where they are
+        given = getattr(self._node, '_parameter_overrides', {})
         for name in sorted(set(given) - set(names)):
             alike = difflib.get_close_matches(name, names, n=1, cutoff=0.8)
             if alike and not self._node.has_parameter(name):
@@ -98,7 +107,7 @@ class Parameters:
     def _check(self, ros_parameters):
         try:
             self._further_check(self._merged(ros_parameters))
-        except Exception as error:  # whatever it is, nothing has been changed yet
+        except Exception as error:  # also an unexpected one: nothing has changed yet
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
@@ -106,10 +115,10 @@ class Parameters:
     def _take(self, ros_parameters):
         if not any(item.name in self.values for item in ros_parameters):
             return
-        # Just now they have passed `_check`.
+        # `_check` has accepted them.
         before, self.values = self.values, self._merged(ros_parameters)
         for name, value in self.values.items():
-            # Somebody may say where the earth is a hundred times a second.
+            # Throttled: gravity may change a hundred times a second.
             if value != before[name] and self._logged.setdefault(name, Throttle(0.5)).is_due():
                 self.logger.info(f'parameter {name} changed: {before[name]} -> {value}')
         self._on_change(self.values, before)

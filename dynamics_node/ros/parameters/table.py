@@ -1,17 +1,20 @@
 """
 Every parameter of the node, in one table.
 
-Declaration, validation, config/dynamics.yaml and docs/reference.md follow from it; tests hold them
-together. A parameter that is not in here does not exist.
+Declaration, checks and docs/reference.md follow from it. Tests compare it with a running node and
+with config/dynamics.yaml.
 
 """
 
+from collections.abc import Mapping, Sequence
 import math
+from typing import Any
 
-from .declaration import DOUBLE, DOUBLES, FLAG, Parameter, ParameterError, TEXT, TEXTS
+from .declaration import check_each, DOUBLE, DOUBLES, FLAG, Parameter, ParameterError, TEXT, TEXTS
 from ...dynamics.friction import SMOOTHING_VELOCITY
 from ...safety.effort_output import STOP_BEHAVIORS
 
+# Largest gravity acceleration, m/s².
 MAX_GRAVITY = 20.0
 
 PARAMETERS = (
@@ -19,8 +22,8 @@ PARAMETERS = (
         'joints',
         TEXTS,
         (),
-        'Joint names: rows of every answer and order of the '
-        'command. Empty: all movable joints in the order of the URDF',
+        'Joint names: rows of every response and order of the command. '
+        'Empty: all movable joints in the order of the URDF',
         read_only=True,
     ),
     Parameter(
@@ -50,40 +53,39 @@ PARAMETERS = (
         'machine_code',
         FLAG,
         False,
-        'Compile machine code for the robot in another process '
-        'at start: some microseconds less per state. By default no compiler runs beside an '
-        'arm',
+        'Compile machine code for the robot in another process at start: saves some '
+        'microseconds per state. By default no compiler runs beside an arm',
         read_only=True,
     ),
     Parameter(
         'command_topic',
         TEXT,
         'forward_effort_controller/commands',
-        'Where the efforts go while output is enabled',
+        'Topic of the efforts while the output is enabled',
         read_only=True,
     ),
     Parameter(
         'enable_on_start',
         FLAG,
         False,
-        'Enable the output as soon as it is possible. '
-        'Many arms compensate gravity below the effort interface: leave it off there',
+        'Enable the output as soon as every check passes. Leave it off for arms that compensate '
+        'gravity below the effort interface',
         read_only=True,
     ),
-    Parameter('publish_dynamics', FLAG, True, 'Publish ~/dynamics while somebody listens'),
+    Parameter('publish_dynamics', FLAG, True, 'Publish ~/dynamics while it has a subscriber'),
     Parameter(
         'publish_external_torque',
         FLAG,
         False,
-        'Publish ~/external_torque. Needs '
-        'velocities and efforts in joint_states, and efforts that are torques',
+        'Publish ~/external_torque. Needs velocities and efforts in joint_states, and efforts '
+        'that are torques',
     ),
     Parameter(
         'external_torque.gain',
         DOUBLE,
         100.0,
-        'Of the momentum observer, 1/s: 95 % of a '
-        'step are there after 3 / gain. Larger is faster and noisier',
+        'Gain of the momentum observer, 1/s: 95 % of a step arrive after 3 / gain. A larger gain '
+        'is faster and noisier',
         low=0.0,
         low_open=True,
         high=10_000.0,
@@ -101,38 +103,37 @@ PARAMETERS = (
         'allow_several_state_publishers',
         FLAG,
         False,
-        'Enable although joint_states has '
-        'several publishers: where arm and gripper have a broadcaster each. No state of one '
-        'then takes the place of one of the other in the queue',
+        'Enable with several publishers of joint_states, if arm and gripper have a broadcaster '
+        'each. The queue of joint_states then holds more than one message',
         read_only=True,
     ),
     Parameter(
         'allow_self_compensating_arm',
         FLAG,
         False,
-        'Enable although the ros2_control '
-        'hardware plugin in the URDF drives an arm that compensates gravity itself: a '
-        'second gravity torque pushes such an arm up (docs/arms.md)',
+        'Enable although the ros2_control hardware plugin in the URDF drives an arm that '
+        'compensates gravity itself: a second gravity torque pushes such an arm up '
+        '(docs/arms.md)',
     ),
     Parameter(
         'allow_upward_gravity',
         FLAG,
         False,
-        'Enable although gravity points up in the '
-        'frame of the root link: for an arm that hangs from a ceiling',
+        'Enable although gravity points up in the frame of the root link: for an arm that hangs '
+        'from a ceiling',
     ),
     Parameter(
         'allow_limits_above_urdf',
         FLAG,
         False,
-        'Enable although effort_limits or velocity_limits are above those of the URDF',
+        'Enable although effort_limits or velocity_limits exceed those of the URDF',
     ),
     Parameter(
         'start_ramp',
         DOUBLE,
         0.5,
-        'Time from zero to the full effort, s. A change of '
-        'payload, gravity, terms, gains or limits while efforts are sent takes as long',
+        'Time from zero to the full effort, s. A change of payload, gravity, terms, gains or '
+        'limits while efforts are sent takes as long',
         low=0.0,
         high=60.0,
     ),
@@ -143,19 +144,20 @@ PARAMETERS = (
         'stop_behavior',
         TEXT,
         'ramp_to_zero',
-        'How the output stops: ramp_to_zero, zero '
-        '(as fast as the rate limits allow, at most 1 s) or hold (when joint states end, '
-        'the last effort stays in force; every other stop ramps to zero)',
+        'How the output stops: ramp_to_zero, zero (as fast as the rate limits allow, at most '
+        '1 s) or hold (when joint states end, the last effort stays in force; every other stop '
+        'ramps to zero)',
         choices=STOP_BEHAVIORS,
     ),
     Parameter(
         'effort_limits',
         DOUBLES,
         (),
-        'Largest effort per joint, N m or N, in the order '
-        'of joints. Empty: those of the URDF; a joint without a limit refuses to be enabled',
+        'Largest effort per joint, N m or N, in the order of joints. Empty: those of the URDF; '
+        'a joint without a limit refuses to be enabled',
         low=0.0,
         low_open=True,
+        per_joint=True,
     ),
     Parameter(
         'effort_rate_limits',
@@ -164,15 +166,17 @@ PARAMETERS = (
         'Largest change of effort per joint, N m/s or N/s. Empty: the effort limit per 0.1 s',
         low=0.0,
         low_open=True,
+        per_joint=True,
     ),
     Parameter(
         'velocity_limits',
         DOUBLES,
         (),
-        'Speed per joint above which the output stops '
-        '(runaway), rad/s or m/s, in the order of joints. Empty: those of the URDF',
+        'Speed per joint above which the output stops (runaway), rad/s or m/s, in the order of '
+        'joints. Empty: those of the URDF',
         low=0.0,
         low_open=True,
+        per_joint=True,
     ),
     Parameter(
         'effort_scale',
@@ -181,6 +185,7 @@ PARAMETERS = (
         'Gain on the model effort per joint. Empty: 1',
         low=0.0,
         high=10.0,
+        per_joint=True,
     ),
     Parameter(
         'compensate.gravity', FLAG, True, 'Whether the gravity torque G is part of the command'
@@ -190,45 +195,49 @@ PARAMETERS = (
         'compensate.friction',
         FLAG,
         False,
-        'Whether friction is part of the command. '
-        'Begin with less than the arm has: it is positive feedback',
+        'Whether friction is part of the command. It is positive feedback: begin with less than '
+        "the arm's friction",
     ),
     Parameter(
         'friction.viscous',
         DOUBLES,
         (),
-        'Viscous friction per joint, N m s/rad or N s/m, '
-        'in the order of joints. Empty: <dynamics damping> of the URDF',
+        'Viscous friction per joint, N m s/rad or N s/m, in the order of joints. '
+        'Empty: <dynamics damping> of the URDF',
         low=0.0,
         high=1e6,
+        per_joint=True,
     ),
     Parameter(
         'friction.coulomb',
         DOUBLES,
         (),
-        'Dry friction per joint, N m or N. Empty: <dynamics friction> of the URDF',
+        'Coulomb friction per joint, N m or N. Empty: <dynamics friction> of the URDF',
         low=0.0,
         high=1e6,
+        per_joint=True,
     ),
     Parameter(
         'friction.smoothing_velocity',
         DOUBLES,
         (),
-        'Speed at which dry friction has 76 % '
-        'of its size, rad/s or m/s: one number, or one per joint. Empty: '
-        f'{SMOOTHING_VELOCITY:g}. Friction is viscous qd + coulomb tanh(qd / smoothing)',
+        'Speed at which Coulomb friction has 76 % of its size, rad/s or m/s: one number, or one '
+        f'per joint. Empty: {SMOOTHING_VELOCITY:g}. Friction is viscous qd + coulomb '
+        'tanh(qd / smoothing)',
         low=0.0,
         low_open=True,
+        per_joint=True,
         takes_one=True,
     ),
     Parameter(
         'rotor_inertia',
         DOUBLES,
         (),
-        'Inertia of the rotors as the joints feel it, with '
-        'the square of the gear ratio, kg m² or kg, per joint. Empty: 0',
+        'Inertia of the rotors reflected to the joints (with the square of the gear ratio), '
+        'kg m² or kg, per joint. Empty: 0',
         low=0.0,
         high=1e6,
+        per_joint=True,
     ),
     Parameter('payload.link', TEXT, '', 'Link that carries the payload'),
     Parameter(
@@ -247,41 +256,34 @@ PARAMETERS = (
         'payload.inertia',
         DOUBLES,
         (0.0,) * 6,
-        'Inertia tensor of the payload about its '
-        'center of mass along the axes of its link, kg m²: ixx, ixy, ixz, iyy, iyz, izz',
+        'Inertia tensor of the payload about its center of mass along the axes of its link, '
+        'kg m²: ixx, ixy, ixz, iyy, iyz, izz',
         length=6,
     ),
 )
 
 
-def check_all(values):
+def check_all(values: Mapping[str, Any]) -> dict[str, Any]:
     """
-    Check values of parameters, and what holds between them.
+    Check the value of every parameter, and the conditions between them.
 
     Parameters
     ----------
-    values : dict of str to Any
-        Name → value as ROS delivers it; names that are missing keep their defaults.
+    values : mapping of str to Any
+        Name → value from ROS; a missing name gets its default.
 
     Returns
     -------
     dict of str to Any
-        All parameters, each in its kind.
+        Name → value of its kind, for all parameters.
 
     Raises
     ------
     ParameterError
-        With every problem, one sentence each.
+        Lists every problem, one sentence each.
 
     """
-    checked, problems = {}, []
-    for parameter in PARAMETERS:
-        try:
-            checked[parameter.name] = parameter.check(
-                values.get(parameter.name, parameter.default)
-            )
-        except ParameterError as error:
-            problems.append(str(error))
+    checked, problems = check_each(PARAMETERS, values)
     size = math.sqrt(sum(item * item for item in checked.get('gravity', ())))
     if size > MAX_GRAVITY:
         problems.append(f'gravity: expected at most {MAX_GRAVITY:g} m/s^2, got {size:.6g}')
@@ -293,3 +295,31 @@ def check_all(values):
     if problems:
         raise ParameterError('; '.join(problems))
     return checked
+
+
+def check_lengths(values: Mapping[str, Any], joint_names: Sequence[str]) -> None:
+    """
+    Check that every parameter with one number per joint fits a robot.
+
+    Parameters
+    ----------
+    values : mapping of str to Any
+        Name → value, checked by `check_all`.
+    joint_names : sequence of str
+        Chosen joints of the robot.
+
+    Raises
+    ------
+    ParameterError
+        If one has another number of entries; empty ones are accepted.
+
+    """
+    for parameter in PARAMETERS:
+        if not parameter.per_joint:
+            continue
+        count = len(values[parameter.name])
+        if count not in (0, len(joint_names)) and not (parameter.takes_one and count == 1):
+            raise ParameterError(
+                f'{parameter.name}: expected {len(joint_names)} numbers for '
+                f'{", ".join(joint_names)}, or none; got {count}'
+            )

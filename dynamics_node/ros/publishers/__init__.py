@@ -1,6 +1,6 @@
 """
-The results of the node besides the command: torques, matrices, external torque, diagnostics.
+The results of the node beside the command: torques, matrices, external torque, diagnostics.
 
-What may change here: what is published after the command has gone out.
+What may change here: topics that are published after the command.
 
 """

@@ -1,18 +1,29 @@
-"""What the node says on /diagnostics: model, joint states, output and so on."""
+"""The topic /diagnostics: model, joint states, output, state machine, external torque."""
 
+from collections.abc import Mapping
 import math
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from .external_torque import ExternalTorque
+from ..context import NodeContext
 from ..support.qos import NO_EVENTS, RESULT
 from ..support.throttling import Rate
+from ..torque_path.command_output import CommandOutput
+from ..torque_path.joint_state_input import JointStateInput
 
 
 class Diagnostics:
-    """Publishes the node's health once a second and on every change of the output."""
+    """Publishes the health of the node once a second and on every change of the output."""
 
-    def __init__(self, context, states, output, external_torque):
+    def __init__(
+        self,
+        context: NodeContext,
+        states: JointStateInput,
+        output: CommandOutput,
+        external_torque: ExternalTorque,
+    ) -> None:
         """
         Create the publisher.
 
@@ -36,13 +47,13 @@ class Diagnostics:
         self._state_rate = Rate()
         self._command_rate = Rate()
 
-    def measure(self):
+    def measure(self) -> None:
         """Update the rates; called once a second."""
         now, robot = time.monotonic(), self._context.robot
         self._state_rate.measure(now, robot.buffer.accepted if robot else 0)
         self._command_rate.measure(now, self._output.commands)
 
-    def publish(self):
+    def publish(self) -> None:
         """Publish the present health."""
         message = DiagnosticArray(
             status=[
@@ -154,7 +165,9 @@ class Diagnostics:
         level = DiagnosticStatus.WARN if problem else DiagnosticStatus.OK
         return self._status('external torque', level, problem or 'on', values)
 
-    def _status(self, part, level, message, values):
+    def _status(
+        self, part: str, level: bytes, message: str, values: Mapping[str, str]
+    ) -> DiagnosticStatus:
         return DiagnosticStatus(
             name=f'{self._node.get_name()}: {part}',
             level=level,

@@ -1,23 +1,32 @@
-"""What pushes the arm from outside, published for every state while it is wanted."""
+"""The topic ~/external_torque: torque on the joints from outside, for every state."""
+
+from __future__ import annotations
 
 import math
+from typing import Any
 
 from builtin_interfaces.msg import Time
+import numpy as np
+from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
 
+from ..context import NodeContext
 from ..support.callback_errors import logged
 from ..support.messages import to_field
 from ..support.qos import NO_EVENTS, RESULT
 from ..support.throttling import Throttle
+from ..torque_path.active_robot import ActiveRobot
 from ...dynamics import MomentumObserver
 from ...dynamics.momentum_observer import LONGEST_STEP
-from ...safety import EffortAtRest
+from ...safety import EffortPlausibility
 
-# The shortest time between two warnings about the same thing, s.
+# Shortest time between two warnings of the same kind, s.
 WARN_EVERY = 10.0
+# ns.
 _SECOND = 1_000_000_000
-# So many begins in a row are no gap, but states that are too rare.
-MAX_BEGINS = 3
+# Restarts of the observer in a row: fewer are a gap, more are a too low rate of joint states.
+MAX_RESTARTS = 3
+# Missing input → what to do.
 _TO_DO = {
     'velocity': 'give the joints a velocity state interface in the <ros2_control> of the URDF',
     'effort': 'give the joints an effort state interface in the <ros2_control> of the URDF, if '
@@ -33,11 +42,11 @@ class ExternalTorque:
     ----------
     is_on : bool
     published : int
-        Messages published so far.
+        Number of published messages.
 
     """
 
-    def __init__(self, context):
+    def __init__(self, context: NodeContext) -> None:
         """
         Create the publisher; off until `configure`.
 
@@ -51,103 +60,105 @@ class ExternalTorque:
         self._publisher = context.node.create_publisher(
             JointState, '~/external_torque', RESULT, event_callbacks=NO_EVENTS
         )
-        self._warnings = {what: Throttle(WARN_EVERY) for what in (*_TO_DO, 'rate', 'doubt')}
-        self._watch: _Watch | None = None
+        self._warnings = {kind: Throttle(WARN_EVERY) for kind in (*_TO_DO, 'rate', 'doubt')}
+        self._observation: _Observation | None = None
         self._missing = ''
         self.is_on = False
-        self.published = self._begun = 0
+        self.published = self._restarts = 0
 
-    def configure(self):
+    def configure(self) -> bool:
         """
-        Take over the parameters.
+        Apply the parameters.
 
         Returns
         -------
         bool
-            Whether it is on, so that it needs measured efforts.
+            Whether it is on, and needs measured efforts.
 
         """
         is_on = self._parameters['publish_external_torque']
         if is_on != self.is_on:
-            self.is_on, self._watch, self._missing = is_on, None, ''
+            self.is_on, self._observation, self._missing = is_on, None, ''
         return is_on
 
     @logged
-    def on_state(self, robot, stamp, gravity_torque):
+    def on_state(
+        self, robot: ActiveRobot, stamp: Time, gravity_torque: NDArray[np.float64]
+    ) -> None:
         """
-        Observe a state, and publish what follows from it.
+        Observe a state, and publish the estimate.
 
         Parameters
         ----------
         robot : ActiveRobot
-            With that state in its buffer.
+            Its buffer holds the state.
         stamp : builtin_interfaces.msg.Time
-            Of the state, or of its arrival if it says none.
+            Of the state, or of its arrival if it has none.
         gravity_torque : numpy.ndarray, shape (m,)
             G of the chosen joints at that state, N m or N, finite.
 
         """
         time = robot.buffer.measured or stamp.sec * _SECOND + stamp.nanosec
-        gain, watch = self._parameters['external_torque.gain'], self._watch
-        if watch is None or not watch.fits(robot, gain):
-            watch = self._watch = _Watch(robot, gain, time, watch)
-        elif watch.time <= time <= watch.newest:
-            return  # a part of a state: the joints that are older have not come yet
-        watch.take(time, robot)
+        gain, seen = self._parameters['external_torque.gain'], self._observation
+        if seen is None or not seen.fits(robot, gain):
+            seen = self._observation = _Observation(robot, gain, time, seen)
+        elif seen.time <= time <= seen.newest:
+            return  # a partial state: the older joints have not arrived yet
+        seen.follow(time, robot)
         buffer, index = robot.buffer, robot.selection.index
         q, qd, effort = buffer.position, buffer.velocity, buffer.effort[index]
         if self._is_unknown(robot, velocity=qd[index], effort=effort):
-            watch.forget()
+            seen.restart()
             return
-        estimate = watch.observer.update(watch.seconds, q, qd, effort)
-        if watch.at_rest.update(watch.seconds, qd[index], effort, gravity_torque):
-            self._warn_of(watch.at_rest.doubt)
-        if watch.observer.observed == 0.0:
-            self._begun += 1
-            self._notice_rare(watch)
+        estimate = seen.observer.update(seen.seconds, q, qd, effort)
+        if seen.at_rest.update(seen.seconds, qd[index], effort, gravity_torque):
+            self._warn_of_doubt(seen.at_rest.warning)
+        if seen.observer.observed == 0.0:
+            self._restarts += 1
+            self._check_rate(seen)
         elif all(map(math.isfinite, estimate.tolist())):
-            watch.begins = 0
+            seen.restarts = 0
             self._publish(robot, time, q[index], qd[index], estimate)
 
-    def health(self):
+    def health(self) -> tuple[str, dict[str, str]]:
         """
-        Return what there is to say to people.
+        Return the health for the diagnostics.
 
         Returns
         -------
         problem : str
-            Why nothing is published, or why it can hardly be right; '' if all is well.
+            Why nothing is published, or why the estimate is implausible; '' without a problem.
         values : dict of str to str
 
         """
-        doubt = self._watch.at_rest.doubt if self._watch else ''
+        doubt = self._observation.at_rest.warning if self._observation else ''
         return self._missing or doubt, {
             'published': str(self.published),
-            'begun': str(self._begun),
+            'begun': str(self._restarts),
             'missing': self._missing,
             'effort at rest': doubt or 'nothing wrong',
         }
 
-    def _is_unknown(self, robot, **measured):
-        for what, values in measured.items():
+    def _is_unknown(self, robot: ActiveRobot, **measured: Any) -> bool:
+        for kind, values in measured.items():
             names = [
                 name
                 for name, value in zip(robot.joint_names, values.tolist(), strict=True)
                 if not math.isfinite(value)
             ]
             if names:
-                self._missing = f'no {what} in joint_states of {", ".join(names)}'
-                if self._warnings[what].is_due():
+                self._missing = f'no {kind} in joint_states of {", ".join(names)}'
+                if self._warnings[kind].is_due():
                     self.logger.warning(
-                        f'{self._missing}: ~/external_torque is not published; {_TO_DO[what]}'
+                        f'{self._missing}: ~/external_torque is not published; {_TO_DO[kind]}'
                     )
                 return True
         self._missing = ''
         return False
 
-    def _notice_rare(self, watch):
-        watch.begins += 1
-        if watch.begins >= MAX_BEGINS:
+    def _check_rate(self, seen):
+        seen.restarts += 1
+        if seen.restarts >= MAX_RESTARTS:
             self._missing = f'joint states come more than {LONGEST_STEP:g} s apart'
             if self._warnings['rate'].is_due():
                 self.logger.warning(
@@ -155,7 +166,7 @@ class ExternalTorque:
                     'the rate of the joint state broadcaster'
                 )
 
-    def _warn_of(self, doubt):
+    def _warn_of_doubt(self, doubt):
         if doubt and self._warnings['doubt'].is_due():
             self.logger.warning(
                 f'the effort of joint_states can hardly be torque: {doubt}. Some drivers report '
@@ -177,54 +188,54 @@ class ExternalTorque:
         self.published += 1
 
 
-class _Watch:
+class _Observation:
     """
-    One robot under observation.
+    The observation of one robot.
 
     Attributes
     ----------
     observer : MomentumObserver
-    at_rest : EffortAtRest
+    at_rest : EffortPlausibility
     time, newest : int
-        Of the newest state, ns: when the oldest and the newest of its joints was measured.
-    begins : int
-        How often in a row the observer has begun anew.
+        Stamps of the oldest and the newest joint of the latest state, ns.
+    restarts : int
+        Restarts of the observer in a row.
 
     """
 
-    def __init__(self, robot, gain, time, before):
-        """Begin to observe at a time, ns; `before` is the watch that ends."""
-        # What must stay as it is: a jump of the arm or of the clock is a break in what was
-        # measured.
-        self._robot, self._what = robot, (robot.buffer.breaks, gain)
+    def __init__(
+        self, robot: ActiveRobot, gain: float, time: int, before: _Observation | None
+    ) -> None:
+        # A jump of the arm or of the clock (a break), or another gain, ends the observation.
+        self._robot, self._fixed = robot, (robot.buffer.breaks, gain)
         self._model = robot.model
         self.observer = MomentumObserver(robot.model, gain, robot.joint_names)
-        self.at_rest = EffortAtRest(
+        self.at_rest = EffortPlausibility(
             robot.joint_names, robot.model.effort_limits[robot.selection.index]
         )
         if before is not None and before.at_rest.names == self.at_rest.names:
-            self.at_rest.doubt = before.at_rest.doubt
-        # Seconds since then have digits enough, those since 1970 have not.
-        self._epoch = self.time = self.newest = time
-        self.begins = 0
+            self.at_rest.warning = before.at_rest.warning
+        # Seconds since the start, because seconds since 1970 have too few digits in a double.
+        self._start = self.time = self.newest = time
+        self.restarts = 0
 
-    def fits(self, robot, gain):
-        """Tell whether it may go on with a robot as it is now, and a gain."""
-        return self._robot is robot and self._what == (robot.buffer.breaks, gain)
+    def fits(self, robot: ActiveRobot, gain: float) -> bool:
+        """Tell whether the observation continues with this robot and gain."""
+        return self._robot is robot and self._fixed == (robot.buffer.breaks, gain)
 
-    def take(self, time, robot):
-        """Go on to a state, ns, and to the model in force: the payload or gravity may be new."""
+    def follow(self, time: int, robot: ActiveRobot) -> None:
+        """Go on to a state, ns, and to the model in force, with its payload and gravity."""
         self.time, self.newest = time, max(time, robot.buffer.newest_measured)
         if robot.model is not self._model:
             self._model = robot.model
             self.observer.follow(robot.model)
 
     @property
-    def seconds(self):
-        """The time of the newest state since the watch began, s."""
-        return (self.time - self._epoch) * 1e-9
+    def seconds(self) -> float:
+        """The time of the latest state since the start, s."""
+        return (self.time - self._start) * 1e-9
 
-    def forget(self):
-        """Begin anew with the next state."""
+    def restart(self) -> None:
+        """Start again with the next state."""
         self.observer.reset()
         self.at_rest.forget()

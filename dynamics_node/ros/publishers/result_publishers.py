@@ -1,18 +1,22 @@
-"""What is published for every joint state: gravity torque, and all of the dynamics."""
+"""The publishers of gravity torque and dynamics, for every joint state."""
 
+from builtin_interfaces.msg import Time
 from dynamics_interfaces.msg import JointDynamics
 import numpy as np
+from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
 
+from ..context import NodeContext
 from ..support.messages import to_field
 from ..support.qos import NO_EVENTS, RESULT
 from ..support.throttling import HasSubscribers
+from ..torque_path.active_robot import ActiveRobot
 
 
 class ResultPublishers:
-    """Publishes ~/gravity_torque and ~/dynamics while somebody listens."""
+    """Publishes ~/gravity_torque and ~/dynamics while they have subscribers."""
 
-    def __init__(self, context):
+    def __init__(self, context: NodeContext) -> None:
         """
         Create the publishers.
 
@@ -28,26 +32,26 @@ class ResultPublishers:
         self._dynamics = node.create_publisher(
             JointDynamics, '~/dynamics', RESULT, event_callbacks=NO_EVENTS
         )
-        self._is_gravity_wanted = HasSubscribers(self._gravity)
-        self._is_dynamics_wanted = HasSubscribers(self._dynamics)
+        self._gravity_has_subscribers = HasSubscribers(self._gravity)
+        self._dynamics_has_subscribers = HasSubscribers(self._dynamics)
 
-    def publish(self, robot, stamp, effort):
+    def publish(self, robot: ActiveRobot, stamp: Time, effort: NDArray[np.float64]) -> None:
         """
-        Publish what is wanted of one state.
+        Publish the results of one state, on topics with subscribers.
 
         Parameters
         ----------
         robot : ActiveRobot
-            With that state in its buffer.
+            Its buffer holds the state.
         stamp : builtin_interfaces.msg.Time
             Of the state.
         effort : numpy.ndarray, shape (m,)
             G of the chosen joints, N m or N, finite.
 
         """
-        if self._is_gravity_wanted:
+        if self._gravity_has_subscribers:
             self._publish_gravity(robot, stamp, effort)
-        if self._is_dynamics_wanted and self._parameters['publish_dynamics']:
+        if self._dynamics_has_subscribers and self._parameters['publish_dynamics']:
             self._publish_dynamics(robot, stamp)
 
     def _publish_gravity(self, robot, stamp, effort):

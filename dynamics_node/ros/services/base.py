@@ -1,8 +1,8 @@
-"""How services about the robot are declared, answered and refused."""
+"""Declaration of the services about the robot: success, refusal, state of a request."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 import functools
 from typing import Any
 
@@ -15,7 +15,7 @@ from ..support.callback_errors import guarded_service
 from ..torque_path.active_robot import ActiveRobot
 from ...errors import DynamicsError
 
-# Response fields that are one number: in a refusal they are NaN, because 0 would be a value.
+# Scalar response fields: NaN in a refusal, because 0 would be a valid value.
 _NUMBERS = ('kinetic_energy', 'potential_energy', 'mass')
 
 
@@ -25,10 +25,9 @@ class NoRobotError(DynamicsError):
 
 class RobotServices:
     """
-    A group of services of the node: every method that `service` or `state_service` decorates.
+    A group of services: its methods decorated with `service` or `state_service`.
 
-    A request that cannot be answered gets success = false, a message that says why, and empty
-    arrays.
+    A refused request gets success = false, the reason as message, and empty arrays.
 
     Attributes
     ----------
@@ -41,9 +40,15 @@ class RobotServices:
         self.context = context
         self.parameters = context.parameters
         self.logger = context.logger
-        for name in sorted(vars(type(self))):
-            if kind := getattr(getattr(type(self), name), 'service_type', None):
-                context.node.create_service(kind, f'~/{name}', getattr(self, name))
+        for name, kind, _ in self.declared():
+            context.node.create_service(kind, f'~/{name}', getattr(self, name))
+
+    @classmethod
+    def declared(cls) -> Iterator[tuple[str, type, str]]:
+        """Yield the name, the type and the docstring of every service of this group."""
+        for name, method in vars(cls).items():
+            if kind := getattr(method, 'service_type', None):
+                yield name, kind, method.__doc__ or ''
 
     def robot(self) -> ActiveRobot:
         """
@@ -52,7 +57,7 @@ class RobotServices:
         Raises
         ------
         NoRobotError
-            If there is none yet; says what to do.
+            If there is none yet.
 
         """
         if self.context.robot is None:
@@ -63,7 +68,7 @@ class RobotServices:
         return self.context.robot
 
     def failed(self, response: Any, message: str) -> Any:
-        """Return a response, which nothing has filled yet, as the refusal of a request."""
+        """Return an empty response, filled as a refusal."""
         response.success = False
         response.message = message
         for name in _NUMBERS:
@@ -72,7 +77,7 @@ class RobotServices:
         return self.completed(response)
 
     def completed(self, response: Any) -> Any:
-        """Return the response with what every answer has, also a refusal; by default nothing."""
+        """Complete a response, also a refusal; unchanged by default."""
         return response
 
 
@@ -80,8 +85,8 @@ def service(kind: type) -> Callable:
     """
     Declare a method of `RobotServices` as the service `~/<its name>`.
 
-    The method is called with request and response, fills the response and returns its message,
-    or raises DynamicsError or ParameterError, which become the refusal.
+    The method takes request and response, fills the response and returns its message.
+    DynamicsError and ParameterError become the refusal. Its docstring is "Answer ...".
 
     Parameters
     ----------
@@ -111,8 +116,8 @@ def state_service(kind: type) -> Callable:
     """
     Declare a method of `RobotServices` as the service `~/<its name>` about one state.
 
-    The method is called with the resolved `Query`, request and response. Joint names, state and
-    message of the response are filled here.
+    The method takes the resolved `Query`, request and response. Joint names, state and message
+    of the response are filled here. Its docstring is "Answer ...".
 
     Parameters
     ----------

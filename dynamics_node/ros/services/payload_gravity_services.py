@@ -1,6 +1,7 @@
-"""The services that say what the robot carries and where the earth is."""
+"""The services that set payload and gravity."""
 
 import time
+from typing import Any
 
 from dynamics_interfaces.srv import SetGravity, SetPayload
 import numpy as np
@@ -11,7 +12,7 @@ from ...dynamics.arguments import check_link
 from ...errors import ArgumentError
 
 _TENSOR = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
-# Parameters of which a refusal speaks, and the request's fields that they were set from.
+# Parameter names in a refusal → the fields of the request.
 _FIELDS = {
     'payload.link': 'link',
     'payload.mass': 'inertia.m',
@@ -20,7 +21,7 @@ _FIELDS = {
     'payload com': 'inertia.com',
     'payload inertia': 'inertia.ixx to izz',
 }
-# Anywhere on the surface of the earth gravity is between these, m/s².
+# Range of gravity on the surface of the earth, m/s².
 _LEAST, _MOST = 9.76, 9.84
 
 
@@ -28,13 +29,13 @@ class PayloadGravityServices(RobotServices):
     """
     The services ~/set_payload and ~/set_gravity.
 
-    They set parameters, so that what is in force can be read there, and is checked in one place.
+    Both set parameters: the values in force can be read there, and are checked in one place.
 
     """
 
     @service(SetPayload)
-    def set_payload(self, request, response):
-        """Put a payload in place of the one before; answer the one in force."""
+    def set_payload(self, request: Any, response: Any) -> str:
+        """Answer the payload in force; m = 0 removes it."""
         robot, inertia = self.robot(), request.inertia
         com = (inertia.com.x, inertia.com.y, inertia.com.z)
         six = tuple(getattr(inertia, name) for name in _TENSOR)
@@ -59,8 +60,8 @@ class PayloadGravityServices(RobotServices):
         )
 
     @service(SetGravity)
-    def set_gravity(self, request, response):
-        """Take another direction of gravity; answer the one in force."""
+    def set_gravity(self, request: Any, response: Any) -> str:
+        """Answer gravity in force; it points to the earth, in the frame of any link."""
         robot, frame = self.robot(), request.gravity.header.frame_id
         vector = request.gravity.vector
         gravity = np.array([vector.x, vector.y, vector.z])
@@ -81,11 +82,13 @@ class PayloadGravityServices(RobotServices):
             else ', which is not that of the earth: its length counts too'
         )
 
-    def completed(self, response):
-        """Return the response, also a refusal, with the payload or the gravity in force."""
+    def completed(self, response: Any) -> Any:
+        """Add the payload or the gravity in force to a response, also to a refusal."""
         if isinstance(response, SetPayload.Response):
             return self._with_payload(response)
-        return self._with_gravity(response)
+        if isinstance(response, SetGravity.Response):
+            return self._with_gravity(response)
+        return response
 
     def _set_payload(self, link, mass, com, six):
         values = {'link': link, 'mass': mass, 'com': com, 'inertia': six}
@@ -97,9 +100,9 @@ class PayloadGravityServices(RobotServices):
     def _turned(self, robot, frame, vector):
         check_link(robot.model.tree.links, frame, 'header.frame_id')
         timeout = self.parameters['state_timeout']
-        # Every joint that turns it, also those that are not in `joints`, and no other.
+        # The joints between base and frame must be measured, also those outside `joints`.
         if stale := robot.buffer.stale_joints(
-            time.monotonic(), timeout, _joints_to(robot.model.tree, frame)
+            time.monotonic(), timeout, robot.model.tree.supporting_joints(frame)
         ):
             raise ArgumentError(
                 f'header.frame_id: how {frame} is turned is not known: no joint '
@@ -128,15 +131,6 @@ class PayloadGravityServices(RobotServices):
             stamped.header.frame_id = robot.model.tree.root
             stamped.vector.x, stamped.vector.y, stamped.vector.z = robot.model.gravity.tolist()
         return response
-
-
-def _joints_to(tree, link):
-    # Places of the joints between the base and a link, each once.
-    body, joints = tree.links[link].body, set()
-    while body >= 0:
-        joints.add(int(tree.q_index[body]))
-        body = tree.parent[body]
-    return sorted(joints)
 
 
 def _with_fields(text):

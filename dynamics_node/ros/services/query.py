@@ -1,36 +1,44 @@
-"""One request, resolved: the state of all joints, and the joints and order that are asked for."""
+"""A request about one state, resolved: state of all joints, requested joints and their order."""
 
+from array import array
+from collections.abc import Sequence
 import time
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..support.messages import from_field, to_field
+from ..torque_path.active_robot import ActiveRobot
 from ...errors import ArgumentError
 
-# Joints that a refusal lists.
+# Largest number of joints in a refusal.
 _MOST_SHOWN = 8
+_Numbers = TypeVar('_Numbers', float, NDArray[np.float64])
 
 
 class Query:
     """
-    What a request about one state asks for.
+    The state and the joints of a request.
 
     Attributes
     ----------
     model : RobotModel
     names : list of str
-        The wanted joints in the wanted order.
+        The m requested joints in the requested order.
+    index : numpy.ndarray of int, shape (m,)
+        Their places among all n joints of the model.
     q, qd : numpy.ndarray, shape (n,)
-        State of all joints of the model; joints that are not wanted stand still.
+        State of all joints of the model; the other joints stand still.
     message : str
-        Where this state comes from, for people.
+        The source of the state.
     unseen : str
-        What to append to it: joints of unknown position that were not asked for, and given
-        positions beyond the limits.
+        Appended to the message: other joints of unknown position, and given positions beyond
+        the limits.
 
     """
 
-    def __init__(self, robot, request, timeout):
+    def __init__(self, robot: ActiveRobot, request: Any, timeout: float) -> None:
         """
         Resolve `joint_names`, `position`, and `velocity` if the request has one.
 
@@ -38,9 +46,9 @@ class Query:
         ----------
         robot : ActiveRobot
         request : object
-            A service's request.
+            Request of a service.
         timeout : float
-            Age at which a measured state is still fresh, s.
+            Largest age of a fresh measured state, s.
 
         Raises
         ------
@@ -70,21 +78,21 @@ class Query:
         if hasattr(request, 'velocity'):
             self.qd = self.whole('velocity', request.velocity)
 
-    def whole(self, name, field):
+    def whole(self, name: str, field: Sequence[float]) -> NDArray[np.float64]:
         """
         Return one value for every joint of the model.
 
         Parameters
         ----------
         name : str
-            Of the request's field, for people.
+            Name of the request's field, for messages.
         field : sequence of float
-            For the wanted joints; empty for zeros, which `message` then says.
+            For the requested joints; empty for zeros, which `message` then mentions.
 
         Returns
         -------
         numpy.ndarray, shape (n,)
-            Zero for joints that are not wanted.
+            Zero for the other joints.
 
         Raises
         ------
@@ -99,18 +107,18 @@ class Query:
             self.message += f', {name} zero'
         return values
 
-    def part(self, vector):
-        """Return the entries of the wanted joints of a vector of all joints, as a field."""
+    def part(self, vector: NDArray[np.float64]) -> array:
+        """Return the entries of the requested joints of a vector of all joints, as a field."""
         return to_field(finite(vector if self.has_all_in_order else vector[self.index]))
 
-    def block(self, matrix):
-        """Return rows and columns of the wanted joints of a matrix of all joints, as a field."""
+    def block(self, matrix: NDArray[np.float64]) -> array:
+        """Return rows and columns of the requested joints of a matrix, as a field."""
         if not self.has_all_in_order:
             matrix = matrix[np.ix_(self.index, self.index)]
         return to_field(finite(matrix))
 
-    def columns(self, matrix):
-        """Return the columns of the wanted joints of a matrix of all joints, as a field."""
+    def columns(self, matrix: NDArray[np.float64]) -> array:
+        """Return the columns of the requested joints of a matrix, as a field."""
         return to_field(finite(matrix if self.has_all_in_order else matrix[:, self.index]))
 
     def _checked(self, name, field):
@@ -127,9 +135,9 @@ class Query:
         return values
 
 
-def not_finite(names, values):
+def not_finite(names: Sequence[str], values: NDArray[np.float64]) -> str:
     """
-    Return which of some values are not finite, in words.
+    Return the values that are not finite, in words.
 
     Parameters
     ----------
@@ -140,7 +148,7 @@ def not_finite(names, values):
     Returns
     -------
     str
-        "nan for elbow_pitch", at most eight of them.
+        "nan for elbow_pitch"; at most eight joints.
 
     """
     wrong = np.flatnonzero(~np.isfinite(values))
@@ -148,14 +156,14 @@ def not_finite(names, values):
     return ', '.join(f'{values[i]} for {names[i]}' for i in wrong[:_MOST_SHOWN]) + more
 
 
-def finite(values):
+def finite(values: _Numbers) -> _Numbers:
     """
-    Return values that are finite as they are.
+    Return values unchanged if all are finite.
 
     Raises
     ------
     ArgumentError
-        If one is not: what was asked for is beyond what numbers can hold.
+        If one is not: the result exceeds the range of double precision.
 
     """
     if not np.isfinite(values).all():

@@ -1,40 +1,44 @@
-"""Between trajectory_msgs/JointTrajectory and arrays."""
+"""Conversion between trajectory_msgs/JointTrajectory and arrays."""
 
 from array import array
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from .query import not_finite
+from ..torque_path.active_robot import ActiveRobot
 from ...dynamics import JointSelection
 from ...errors import ArgumentError
 
 
 class TrajectoryArrays:
     """
-    The points of a message as arrays of all joints of a robot.
+    The points of a message as arrays.
 
     Attributes
     ----------
     names : tuple of str
-        The trajectory's joints.
+        The m joints of the trajectory.
     index : numpy.ndarray of int, shape (m,)
-        Their places among all joints.
+        Their places among all n joints of the robot.
     time : numpy.ndarray, shape (N,)
         time_from_start, s.
     positions, velocities, accelerations : numpy.ndarray, shape (N, m)
-        rad or m, per s, per s²; rows of NaN where a point has none.
+        rad or m, per s, per s²; a row of NaN for a point without values.
 
     """
 
-    def __init__(self, robot, trajectory):
+    def __init__(self, robot: ActiveRobot, trajectory: JointTrajectory) -> None:
         """
-        Take a message apart.
+        Read a message.
 
         Parameters
         ----------
         robot : ActiveRobot
         trajectory : trajectory_msgs.msg.JointTrajectory
-            Its joint_names may be any of the robot's joints; empty for the chosen ones.
+            With any of the robot's joints; without joint_names, with the chosen ones.
 
         Raises
         ------
@@ -71,10 +75,10 @@ class TrajectoryArrays:
                 f'trajectory.points[{wrong[0]}].{name}: expected {count} numbers '
                 f'for {", ".join(self.names)}, or none; got {lengths[wrong[0]]}'
             )
-        # All at once: a trajectory may have ten thousand points.
+        # In one array: a trajectory may have ten thousand points.
         numbers = np.frombuffer(b''.join(fields), dtype=float).reshape(-1, count)
         if not np.isfinite(numbers).all():
-            # Inside, NaN stands for what is missing: here it would be believed to be that.
+            # A given NaN would be taken for a missing value.
             place = int(np.argmin(np.isfinite(numbers).all(axis=1)))
             point = int(np.flatnonzero(lengths)[place])
             raise ArgumentError(
@@ -85,7 +89,7 @@ class TrajectoryArrays:
         values[lengths == count] = numbers
         return values
 
-    def whole(self, values, rest):
+    def whole(self, values: NDArray[np.float64], rest: NDArray[np.float64]) -> NDArray[np.float64]:
         """
         Return one value for every joint of the robot.
 
@@ -93,7 +97,7 @@ class TrajectoryArrays:
         ----------
         values : numpy.ndarray, shape (N, m)
         rest : numpy.ndarray, shape (n,)
-            What holds for the joints that are not in the trajectory.
+            For the joints outside the trajectory.
 
         Returns
         -------
@@ -105,13 +109,13 @@ class TrajectoryArrays:
         return all_joints
 
 
-def put_efforts(points, efforts):
+def put_efforts(points: Sequence[JointTrajectoryPoint], efforts: NDArray[np.float64]) -> None:
     """
     Write efforts into the points of a trajectory.
 
     Parameters
     ----------
-    points : list of trajectory_msgs.msg.JointTrajectoryPoint
+    points : sequence of trajectory_msgs.msg.JointTrajectoryPoint
         N points; changed in place.
     efforts : numpy.ndarray, shape (N, m)
         N m or N.

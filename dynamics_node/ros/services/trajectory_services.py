@@ -1,27 +1,31 @@
-"""The services about trajectories and about how much the robot can carry."""
+"""The services about trajectories and the largest payload."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 import time
+from typing import Any
 
 from dynamics_interfaces.srv import ComputeTrajectoryEffort, GetMaxPayload
 import numpy as np
+from numpy.typing import NDArray
 
 from .base import RobotServices, service
 from .query import finite, Query
 from .trajectory_message import put_efforts, TrajectoryArrays
+from ..context import NodeContext
 from ..support.messages import to_field
 from ...dynamics import complete_trajectory, over_limit
 from ...errors import ArgumentError
+from ...safety import TorquePath
 
-# While efforts are sent, a request must not keep the node busy for longer than about 0.1 s.
+# Points per request while the output is on: the efforts wait for the answer, about 0.1 s.
 MOST_WHILE_DRIVING = 1000
 
 
 class TrajectoryServices(RobotServices):
     """The services ~/compute_trajectory_effort and ~/get_max_payload."""
 
-    def __init__(self, context, path):
+    def __init__(self, context: NodeContext, path: TorquePath) -> None:
         """
         Create the services.
 
@@ -29,15 +33,20 @@ class TrajectoryServices(RobotServices):
         ----------
         context : NodeContext
         path : TorquePath
-            While it is on, no answer may take long.
+            Long requests are refused while it is on.
 
         """
         super().__init__(context)
         self._path = path
 
     @service(ComputeTrajectoryEffort)
-    def compute_trajectory_effort(self, request, response):
-        """Answer the same trajectory with efforts, and where they are above their limits."""
+    def compute_trajectory_effort(self, request: Any, response: Any) -> str:
+        """
+        Answer the trajectory with `effort` in every point; points and joints above their limit.
+
+        Missing velocities and accelerations are those of a spline through the positions.
+
+        """
         robot, trajectory = self.robot(), request.trajectory
         motion = self._motion(robot, trajectory)
         model, (q, qd, qdd) = robot.model, motion.states
@@ -48,7 +57,7 @@ class TrajectoryServices(RobotServices):
         if request.with_friction:
             efforts = efforts + model.friction_torque(qd)
             notes.append('with friction')
-        # The other joints have limits as well: they hold what the trajectory moves.
+        # Of all joints: the others carry the moving ones, and have limits too.
         limits = self._limits(robot)
         over = over_limit(finite(efforts), limits)
         put_efforts(trajectory.points, efforts[:, motion.index])
@@ -64,17 +73,22 @@ class TrajectoryServices(RobotServices):
         return ('; '.join(notes) or 'all velocities and accelerations were given') + motion.unseen
 
     @service(GetMaxPayload)
-    def get_max_payload(self, request, response):
-        """Answer the largest mass at a point of a link, and the joint that allows no more."""
+    def get_max_payload(self, request: Any, response: Any) -> str:
+        """
+        Answer the largest mass on a link, at a state or over a trajectory, and the limiting joint.
+
+        The mass is infinite if no effort limit is in the way.
+
+        """
         robot = self.robot()
         link = request.link or robot.model.tip_link
         point = (request.point.x, request.point.y, request.point.z)
-        motion = self._asked_motion(robot, request)
+        motion = self._requested_motion(robot, request)
         q, qd, qdd = motion.states
         limits = self._limits_before_gains(robot)
         most = robot.model.max_payload(q, link, point, qd=qd, qdd=qdd, effort_limits=limits)
         mass, joint, (place,) = most.least()
-        if mass != np.inf:  # which says that no limit is in the way
+        if mass != np.inf:  # infinite: no limit is in the way
             finite(mass)
         carried = robot.model.with_payload(link, mass if np.isfinite(mass) else 0.0, point)
         effort = carried.inverse_dynamics(q[place], qd[place], qdd[place])
@@ -93,8 +107,8 @@ class TrajectoryServices(RobotServices):
             )
         return '; '.join([*notes, *motion.notes]) + motion.unseen
 
-    def _asked_motion(self, robot, request):
-        # The trajectory of a request, or the one state that it asks for, at rest.
+    def _requested_motion(self, robot, request):
+        # The trajectory of a request, or its state, at rest.
         if request.trajectory.points:
             motion = self._motion(robot, request.trajectory)
             motion.notes.insert(0, 'over the trajectory')
@@ -115,7 +129,7 @@ class TrajectoryServices(RobotServices):
         return _read_motion(robot, trajectory, self.parameters['state_timeout'])
 
     def _limits_before_gains(self, robot):
-        # What the node sends is limited after effort_scale; what it never sends has no limit.
+        # The limits apply after effort_scale; a joint with gain 0 gets no effort, and no limit.
         gains = np.ones(len(robot.model.joint_names))
         gains[robot.selection.index] = self.parameters['effort_scale'] or 1.0
         return np.divide(
@@ -123,14 +137,14 @@ class TrajectoryServices(RobotServices):
         )
 
     def _limits(self, robot):
-        # Of all joints: those that are not chosen have their limits too.
+        # Of all joints: the joints outside `joints` have limits too.
         limits = robot.model.effort_limits.copy()
         limits[robot.selection.index] = robot.effort_limits(self.parameters['effort_limits'])
         return limits
 
 
 def _over_in_words(over, limits, names, index):
-    # Joints that are not in the trajectory have no place in the arrays of the answer.
+    # The arrays of the answer have no place for joints outside the trajectory.
     count = len(over.points)
     joints = [
         names[i]
@@ -155,7 +169,7 @@ def _in_words(mass, joint, link):
 @dataclass
 class _Motion:
     """
-    States of all joints of the robot.
+    A sequence of states of all joints of the robot.
 
     Attributes
     ----------
@@ -166,15 +180,15 @@ class _Motion:
     states : tuple of numpy.ndarray, shape (N, n)
         Positions, velocities, accelerations.
     notes : list of str
-        Where they come from, for people.
+        The source of the states, for the message.
     unseen : str
         See `Query`.
 
     """
 
     names: Sequence[str]
-    index: np.ndarray
-    states: tuple[np.ndarray, np.ndarray, np.ndarray]
+    index: NDArray[np.intp]
+    states: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
     notes: list[str]
     unseen: str
 

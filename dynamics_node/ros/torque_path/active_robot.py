@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters.model_settings import configured
-from ...dynamics import Compensation, JointSelection, one_off_model, RobotModel
+from ...dynamics import Compensation, JointSelection, RobotModel
 from ...errors import DynamicsError
 from ...model import build_tree
 from ...safety import JointStateBuffer, MotionLimits
@@ -47,9 +47,7 @@ def read_robot(source: str | bytes, values: Mapping[str, Any]) -> ActiveRobot:
     tree = build_tree(read_urdf(source))
     if not tree.joint_names:
         raise DynamicsError('the robot has no joint that can be moved')
-    return ActiveRobot(
-        RobotModel(tree) if values['machine_code'] else one_off_model(tree), values['joints']
-    )
+    return ActiveRobot(RobotModel(tree, compile=values['machine_code']), values['joints'])
 
 
 class StateUnavailableError(DynamicsError):

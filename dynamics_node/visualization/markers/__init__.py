@@ -1,7 +1,6 @@
 """
-The executable `markers`: masses, inertia and torques for RViz, in a process of their own.
+The executable `markers`: masses, inertia and torques for RViz, in a separate process.
 
-What may change here: how the markers program finds what it shows. What shapes look like is
-decided in `visualization`, and nothing in here runs in the node that drives the arm.
+Shapes are defined in `visualization`. No module here runs in the node that drives the arm.
 
 """

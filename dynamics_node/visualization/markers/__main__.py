@@ -2,6 +2,7 @@
 
 import signal
 import sys
+from types import FrameType
 
 
 class StopRequest:
@@ -11,28 +12,28 @@ class StopRequest:
     Attributes
     ----------
     came : bool
-        Whether one of them has come.
+        Whether one of them has been received.
 
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         """Replace Python's handlers, whose KeyboardInterrupt can come at any line."""
         self.came = False
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._on_signal)
 
-    def ignore(self):
+    def ignore(self) -> None:
         """Ignore both signals from now on: the process is about to end."""
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_IGN)
 
-    def _on_signal(self, number, frame):
+    def _on_signal(self, number: int, frame: FrameType | None) -> None:
         if self.came:
             sys.exit(0)
         self.came = True
 
 
-def main(args=None):
+def main(args: list[str] | None = None) -> int:
     """
     Publish markers until SIGINT or SIGTERM.
 
@@ -60,7 +61,7 @@ def main(args=None):
         # rclpy's own handlers would end the context inside a wait, which raises.
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         node = MarkersNode()
-    except Exception as error:  # a command line or a parameter that is refused
+    except Exception as error:  # an invalid command line or parameter
         rclpy.logging.get_logger('markers').fatal(str(error))
         rclpy.try_shutdown()
         return 1

@@ -1,7 +1,9 @@
-"""When callbacks run, and what happens to their exceptions."""
+"""Limits on callbacks, and reports of their exceptions."""
 
+from collections.abc import Callable
 import functools
 import traceback
+from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 
@@ -13,38 +15,37 @@ REPORT_EVERY = 10.0
 
 class LimitedGroup(MutuallyExclusiveCallbackGroup):
     """
-    A callback group that runs only as many callbacks as it has been allowed.
+    A callback group that runs an allowed number of callbacks.
 
-    The executor does not wait for a subscription whose group allows nothing. Of 500 messages a
-    second, the middleware then keeps the newest, and Python takes only those that are shown.
+    The executor does not wait for a subscription of a group without allowance. Of 500 messages a
+    second, the middleware keeps the newest, and Python reads only the drawn ones.
 
     """
 
-    def __init__(self):
-        """Allow nothing."""
+    def __init__(self) -> None:
         super().__init__()
         self._allowed = 0
 
-    def allow(self, count):
-        """Allow a number of callbacks from now on, instead of those that are left."""
+    def allow(self, count: int) -> None:
+        """Set the number of callbacks that may run."""
         self._allowed = count
 
-    def can_execute(self, entity):
-        """Tell whether a callback may run."""
+    def can_execute(self, entity: Any) -> bool:
+        """Return whether a callback may run."""
         return self._allowed > 0 and super().can_execute(entity)
 
-    def ending_execution(self, entity):
-        """Count a callback that has run."""
+    def ending_execution(self, entity: Any) -> None:
+        """Count a callback."""
         self._allowed -= 1
         super().ending_execution(entity)
 
 
 class ErrorReport:
-    """Logs exceptions with their tracebacks, those of one place at most every REPORT_EVERY."""
+    """Logs exceptions with their tracebacks, for each callback at most every REPORT_EVERY."""
 
-    def __init__(self, logger):
+    def __init__(self, logger: Any) -> None:
         """
-        Use a logger.
+        Create a report without errors.
 
         Parameters
         ----------
@@ -52,16 +53,16 @@ class ErrorReport:
 
         """
         self._logger = logger
-        self._due = {}
+        self._due: dict[str, Throttle] = {}
 
-    def log(self, where, error):
+    def log(self, where: str, error: Exception) -> None:
         """
         Log an exception that is being handled.
 
         Parameters
         ----------
         where : str
-            The callback that raised it.
+            Name of the callback.
         error : Exception
 
         """
@@ -69,11 +70,11 @@ class ErrorReport:
             self._logger.error(f'error in {where}: {error}\n{traceback.format_exc()}')
 
 
-def reported(method):
+def reported(method: Callable[..., Any]) -> Callable[..., Any]:
     """Wrap a callback of an object with `errors`, an ErrorReport: no exception leaves it."""
 
     @functools.wraps(method)
-    def safe(self, *arguments):
+    def safe(self: Any, *arguments: Any) -> Any:
         try:
             return method(self, *arguments)
         except Exception as error:

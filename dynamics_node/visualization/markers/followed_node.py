@@ -1,9 +1,12 @@
 """`FollowedNode`: the dynamics node that markers are drawn for, and its parameters."""
 
+from collections.abc import Callable
 import time
+from typing import Any
 
 from rcl_interfaces.msg import ParameterEvent
 from rcl_interfaces.srv import GetParameters
+from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import qos_profile_parameter_events
 from rclpy.task import Future
@@ -22,7 +25,7 @@ NAMES = (
     'payload.com',
     'payload.inertia',
 )
-# An answer that takes longer is asked for once more, s.
+# Time after which a request is repeated, s.
 ANSWER_WITHIN = 5.0
 
 
@@ -39,7 +42,7 @@ class FollowedNode:
 
     """
 
-    def __init__(self, node, name, on_settings):
+    def __init__(self, node: Node, name: str, on_settings: Callable[[bool], None]) -> None:
         """
         Create the client and the subscription.
 
@@ -49,11 +52,12 @@ class FollowedNode:
         name : str
             Full name of the other node.
         on_settings : callable(bool)
-            Called after `settings` has changed; with True if they were read anew, so that the
-            other node may have another description.
+            Called after a change of `settings`; with True if all were read again: the other node
+            may then have another description.
 
         """
-        self.name, self.settings = name, None
+        self.name = name
+        self.settings: dict[str, Any] | None = None
         self.torque_topic = f'{name}/gravity_torque'
         self.errors = ErrorReport(node.get_logger())
         self._node, self._on_settings = node, on_settings
@@ -65,14 +69,14 @@ class FollowedNode:
             qos_profile_parameter_events,
             event_callbacks=NO_SUBSCRIPTION_EVENTS,
         )
-        self._identity = None
+        self._identity: tuple[tuple[int, ...], ...] | None = None
         self._pending: Future | None = None
         self._asked_at = 0.0
         self._is_outdated = False
 
-    def check(self):
-        """Notice that the other node has appeared, gone or been started again."""
-        # Each publisher has an identity of its own, which another start does not have.
+    def check(self) -> None:
+        """Detect start, end and restart of the other node."""
+        # A restarted node has publishers with other identities.
         identity = tuple(
             sorted(
                 tuple(info.endpoint_gid)
@@ -85,15 +89,15 @@ class FollowedNode:
                 self.settings = None
                 self._on_settings(False)
         elif not self._client.service_is_ready():
-            pass  # it has appeared in part
+            pass  # it is starting
         elif identity != self._identity or self._is_overdue():
             self._identity = identity
             self._ask()
 
-    def _is_overdue(self):
+    def _is_overdue(self) -> bool:
         return self._pending is not None and time.monotonic() - self._asked_at > ANSWER_WITHIN
 
-    def _ask(self):
+    def _ask(self) -> None:
         if self._pending is not None:
             self._client.remove_pending_request(self._pending)
         self._is_outdated, self._asked_at = False, time.monotonic()
@@ -101,10 +105,10 @@ class FollowedNode:
         self._pending.add_done_callback(self._on_answer)
 
     @reported
-    def _on_answer(self, future: Future):
+    def _on_answer(self, future: Future) -> None:
         if future is not self._pending:
             return
-        if self._is_outdated:  # the answer may be older than an event that has come meanwhile
+        if self._is_outdated:  # the answer may be older than an event
             self._ask()
             return
         self._pending = None
@@ -120,7 +124,7 @@ class FollowedNode:
         self._on_settings(True)
 
     @reported
-    def _on_event(self, event):
+    def _on_event(self, event: ParameterEvent) -> None:
         if event.node != self.name:
             return
         changed = {
@@ -133,7 +137,7 @@ class FollowedNode:
         if self._pending is not None:
             self._is_outdated = True
         elif None in changed.values():
-            # The node is declaring its parameters: it has been started again.
+            # The node is declaring its parameters: it has been restarted.
             self._identity = None
         elif self.settings is not None:
             self.settings = {**self.settings, **changed}

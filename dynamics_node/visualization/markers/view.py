@@ -1,15 +1,16 @@
-"""`RobotView`: one robot as it is shown, with the newest state and the newest gravity torque."""
+"""`RobotView`: one robot at its newest state, with the newest gravity torque."""
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from .. import Picture
-from ...dynamics import JointSelection, one_off_model
+from .. import Picture, Shape
+from ...dynamics import JointSelection, RobotModel
 from ...errors import DynamicsError
-from ...model import build_tree
 from ...ros.parameters.model_settings import tensor
-from ...urdf import read_urdf
 
-# A gravity torque that is older than this is not shown any more, s.
+# Largest age of a drawn gravity torque, s.
 TORQUE_TIMEOUT = 1.0
 
 
@@ -17,8 +18,8 @@ class RobotView:
     """
     Draws one robot at its newest joint state.
 
-    Without settings, the masses are drawn: gravity, payload and torques are known to the
-    dynamics node alone.
+    Without settings only the masses are drawn: only the dynamics node knows gravity, payload and
+    torques.
 
     Attributes
     ----------
@@ -27,11 +28,11 @@ class RobotView:
     joint_names : tuple of str
         The m joints whose torques are drawn; none without settings.
     has_new_state : bool
-        Whether a joint state has come since `shapes` was called.
+        Whether a joint state has been received since the last call of `shapes`.
 
     """
 
-    def __init__(self, source):
+    def __init__(self, source: str | bytes) -> None:
         """
         Read a robot description.
 
@@ -43,26 +44,27 @@ class RobotView:
         Raises
         ------
         DynamicsError
-            If the description is refused, or no joint of it can be moved.
+            If the description is invalid, or has no movable joint.
 
         """
-        self._described = one_off_model(build_tree(read_urdf(source)), (0.0, 0.0, 0.0))
+        self._described = RobotModel.from_urdf(source, (0.0, 0.0, 0.0), compile=False)
         names = self._described.joint_names
         if not names:
             raise DynamicsError('the robot has no joint that can be moved')
         self._index = {name: i for i, name in enumerate(names)}
         self._position = self._described.neutral_position.copy()
         self._effort = np.full(len(names), np.nan)
-        self._torque, self._torque_time = {}, -np.inf
+        self._torque: dict[str, float] = {}
+        self._torque_time = -np.inf
         self.has_new_state = False
         self.model = self._described
         self.joint_names: tuple[str, ...] = ()
         self._picture = Picture(self.model.tree, self.joint_names)
         self.configure(None)
 
-    def configure(self, settings):
+    def configure(self, settings: dict[str, Any] | None) -> None:
         """
-        Take the settings of the dynamics node.
+        Apply the settings of the dynamics node.
 
         Parameters
         ----------
@@ -73,7 +75,7 @@ class RobotView:
         Raises
         ------
         DynamicsError
-            If they do not belong to this robot; then the robot is shown without settings.
+            If they do not fit this robot, which is then drawn without settings.
 
         """
         try:
@@ -99,25 +101,27 @@ class RobotView:
         return model, selection.names, limits
 
     def _show(self, model, joint_names, limits):
-        # Gravity may change many times a second, and a picture does not depend on it.
+        # A picture does not depend on gravity, which may change many times a second.
         if joint_names != self.joint_names:
             self._picture = Picture(model.tree, joint_names)
         self.model, self.joint_names = model, joint_names
         self._limits = np.array(limits, dtype=float)
         self._selected = [self._index[name] for name in joint_names]
 
-    def take_state(self, names, position, effort):
+    def take_state(
+        self, names: Sequence[str], position: Sequence[float], effort: Sequence[float]
+    ) -> None:
         """
-        Take a joint state; other joints stay where they were, at first in neutral position.
+        Apply a joint state; other joints keep their position, initially the neutral one.
 
         Parameters
         ----------
         names : sequence of str
-            In any order; joints of other robots are passed over.
+            In any order; joints of other robots are ignored.
         position : sequence of float
-            As many as names, otherwise the whole state is ignored; rad or m.
+            One per name, otherwise the state is ignored; rad or m.
         effort : sequence of float
-            As many as names, N m or N; otherwise no efforts are shown.
+            One per name, N m or N; otherwise no efforts are drawn.
 
         """
         if len(position) != len(names):
@@ -131,15 +135,17 @@ class RobotView:
                 self._effort[i] = tau if np.isfinite(tau) else np.nan
                 self.has_new_state = True
 
-    def take_torque(self, names, gravity_torque, now):
+    def take_torque(
+        self, names: Sequence[str], gravity_torque: Sequence[float], now: float
+    ) -> None:
         """
-        Take the gravity torque that the dynamics node has computed.
+        Apply the gravity torque computed by the dynamics node.
 
         Parameters
         ----------
         names : sequence of str
         gravity_torque : sequence of float
-            As many as names, N m or N.
+            One per name, N m or N.
         now : float
             Steady clock, s.
 
@@ -147,9 +153,9 @@ class RobotView:
         self._torque = dict(zip(names, gravity_torque, strict=False))
         self._torque_time = now
 
-    def shapes(self, now):
+    def shapes(self, now: float) -> list[Shape]:
         """
-        Return what the robot looks like at the newest state.
+        Return the shapes of the newest state.
 
         Parameters
         ----------
@@ -159,8 +165,8 @@ class RobotView:
         Returns
         -------
         list of Shape
-            In the base frame. Torques and efforts are among them only while the gravity torque
-            is finite, names all of `joint_names` and is not older than TORQUE_TIMEOUT.
+            In the base frame; with torques and efforts only while the gravity torque is finite,
+            contains all of `joint_names` and is not older than TORQUE_TIMEOUT.
 
         """
         self.has_new_state = False

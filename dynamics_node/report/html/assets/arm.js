@@ -1,4 +1,4 @@
-// The arm in three dimensions, with a slider for every joint and the gravity torque beside it.
+// The arm in 3D with a slider and the gravity torque for every joint.
 const arm = (() => {
   'use strict';
 
@@ -80,24 +80,24 @@ const arm = (() => {
     }
   };
 
-  // Everything that is drawn at a position of the joints, in meters.
+  // All shapes at a position of the joints, in meters.
   function geometry(robot, q, axisLength) {
-    const found = kinematics.poses(robot, q);
-    const pose = (body) => (body < 0 ? kinematics.base : found[body]);
-    const center = (k) => kinematics.at(found[k], robot.com[k]);
+    const bodies = kinematics.poses(robot, q);
+    const pose = (body) => (body < 0 ? kinematics.base : bodies[body]);
+    const center = (k) => kinematics.at(bodies[k], robot.com[k]);
     return {
-      found,
+      bodies,
       sticks: robot.sticks.map((pair) => pair.map(([body, p]) => kinematics.at(pose(body), p))),
-      joints: found.map((own) => [own[3], own[7], own[11]]),
-      axes: found.map((own, k) => [-axisLength, axisLength].map((way) => (
+      joints: bodies.map((own) => [own[3], own[7], own[11]]),
+      axes: bodies.map((own, k) => [-axisLength, axisLength].map((way) => (
         kinematics.at(own, robot.axis[k].map((x) => x * way))))),
-      // Out of the ball that may sit on the joint.
-      longAxes: found.map((own, k) => [-1, 1].map((way) => (kinematics.at(own,
+      // Longer than the ball around the joint, if there is one.
+      longAxes: bodies.map((own, k) => [-1, 1].map((way) => (kinematics.at(own,
         robot.axis[k].map((x) => x * way * (2 * axisLength + 1.2 * robot.ball[k])))))),
-      centers: found.map((_, k) => center(k)),
-      balls: found.map((_, k) => ({ center: center(k),
+      centers: bodies.map((_, k) => center(k)),
+      balls: bodies.map((_, k) => ({ center: center(k),
         columns: [[robot.ball[k], 0, 0], [0, robot.ball[k], 0], [0, 0, robot.ball[k]]] })),
-      ellipsoids: found.map((own, k) => ({ center: center(k),
+      ellipsoids: bodies.map((own, k) => ({ center: center(k),
         columns: [0, 4, 8].map((row) => [0, 1, 2].map((column) => (
           own[row] * robot.ellipsoid[k][0][column]
           + own[row + 1] * robot.ellipsoid[k][1][column]
@@ -105,7 +105,7 @@ const arm = (() => {
     };
   }
 
-  // Points that the picture must hold: the sticks and the corners around balls and shells.
+  // Points that must fit into the picture: the sticks and the corners around balls and shells.
   function outline(shape) {
     const corners = [...shape.balls, ...shape.ellipsoids].flatMap(({ center, columns }) => (
       [-1, 1].map((way) => center.map((x, i) => x + way * Math.hypot(...columns[i])))));
@@ -150,7 +150,7 @@ const arm = (() => {
         hoverinfo: 'text', text: `gravity ${digits(Math.hypot(...robot.gravity))} m/s²` },
     };
 
-    // What is shown: all that was seen, and no side much shorter than the others.
+    // The visible box: everything drawn so far, and no side much shorter than the others.
     function box() {
       const room = 0.05 * size();
       return seen.map(([low, high]) => {
@@ -159,14 +159,14 @@ const arm = (() => {
       });
     }
 
-    // The longest side is 1, so that the camera sees a small and a long robot alike.
+    // The longest side is 1, so that robots of any size fill the view.
     function aspect(ends) {
       const sides = ends.map(([low, high]) => high - low);
       const [x, y, z] = sides.map((side) => side / Math.max(...sides));
       return { x, y, z };
     }
 
-    // An arrow at the edge of the picture, where no arm is in its way.
+    // An arrow at the edge of the picture, beside the arm.
     function gravityArrow(ends) {
       const strength = Math.hypot(...robot.gravity);
       const way = robot.gravity.map((x) => (strength > 0 ? 0.16 * size() * x / strength : 0));
@@ -235,7 +235,7 @@ const arm = (() => {
     const rows = robot.joints.map((name, place) => makeRow(robot, name, place, {
       moved: (value) => {
         state.q[place] = value;
-        caption.textContent = 'A pose of your own. The torques are what gravity asks for here.';
+        caption.textContent = 'A pose of your own. These are its gravity torques.';
         pressed(null);
         update();
       },
@@ -305,14 +305,15 @@ const arm = (() => {
     const input = make('input', slide);
     input.type = 'range';
     input.setAttribute('aria-label', `position of ${name}`);
-    // Not before min and max: a slider rounds to its steps from min.
+    // The value is set after min and max, because a slider rounds it to steps from min.
     const [low, high] = [robot.lower[place], robot.upper[place]];
     Object.assign(input, { min: low, max: high, step: 'any' });
     const position = make('span', slide);
     const bar = make('i', make('span', element, 'meter'));
     const limit = robot.limit[place];
-    // Not worth a power of ten beside the weight of the robot.
-    const rounding = 1e-8 * robot.mass.reduce((sum, mass) => sum + mass, 0);
+    // A millionth of the robot's weight at 1 m is shown as 0: rounded angles in the URDF cause it.
+    const rounding = 1e-6 * Math.hypot(...robot.gravity)
+      * robot.mass.reduce((sum, mass) => sum + mass, 0);
     const unit = robot.prismatic[place] ? 'N' : 'N m';
     input.addEventListener('input', () => moved(Number(input.value)));
     button.addEventListener('click', chosen);

@@ -1,5 +1,5 @@
-// Where the bodies of the robot are, and what gravity asks of its joints, at any position.
-// docs/mathematics.md: the same pose A_k and G as in the library, held against it by a test.
+// Poses of the bodies and gravity torques of the joints at any position: A_k and G of
+// docs/mathematics.md. A test compares both with the library.
 // A pose is 12 numbers, the first three rows of the 4x4 matrix, row by row.
 const kinematics = (() => {
   'use strict';
@@ -45,24 +45,24 @@ const kinematics = (() => {
 
   // The pose of every body in the base frame; a parent comes before its children.
   function poses(robot, q) {
-    const found = [];
+    const bodies = [];
     robot.parent.forEach((parent, k) => {
       const position = robot.multiplier[k] * q[robot.coordinate[k]] + robot.offset[k];
       const motion = (robot.slides[k] ? slide : turn)(robot.axis[k], position);
       const placed = multiply(robot.placement[k].flat(), motion);
-      found.push(parent < 0 ? placed : multiply(found[parent], placed));
+      bodies.push(parent < 0 ? placed : multiply(bodies[parent], placed));
     });
-    return found;
+    return bodies;
   }
 
   // G, equation (17) with subtree sums of mass and of mass times position, mimics by (19).
-  function gravityTorque(robot, q, found = poses(robot, q)) {
+  function gravityTorque(robot, q, bodies = poses(robot, q)) {
     const mass = robot.mass.slice();
-    const moment = found.map((pose, k) => at(pose, robot.com[k]).map((x) => x * mass[k]));
+    const moment = bodies.map((pose, k) => at(pose, robot.com[k]).map((x) => x * mass[k]));
     const torque = new Array(robot.joints.length).fill(0);
-    for (let k = found.length - 1; k >= 0; k -= 1) {
-      const axis = along(found[k], robot.axis[k]);
-      const origin = [found[k][3], found[k][7], found[k][11]];
+    for (let k = bodies.length - 1; k >= 0; k -= 1) {
+      const axis = along(bodies[k], robot.axis[k]);
+      const origin = [bodies[k][3], bodies[k][7], bodies[k][11]];
       const lever = moment[k].map((x, i) => x - mass[k] * origin[i]);
       const way = robot.slides[k] ? axis.map((x) => x * mass[k]) : cross(axis, lever);
       torque[robot.coordinate[k]] -= robot.multiplier[k] * dot(robot.gravity, way);

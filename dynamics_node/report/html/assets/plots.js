@@ -2,23 +2,23 @@
 const plots = (() => {
   'use strict';
 
-  // Plotly's button that sends a chart to its makers has no place here.
+  // Without plotly's button that uploads a chart.
   const config = { displaylogo: false, displayModeBar: 'hover',
     showSendToCloud: false, plotlyServerURL: '', showTips: false,
     modeBarButtonsToRemove: ['zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'select2d', 'lasso2d',
       'autoScale2d', 'resetScale2d', 'resetCameraLastSave3d', 'tableRotation', 'orbitRotation',
       'zoom3d'] };
   const drawn = new Map();
-  // plotly itself only sees that the window changes its size.
+  // plotly itself only notices a new size of the window, not of its element.
   const sizes = new ResizeObserver((entries) => entries.forEach(({ target }) => {
     const { width, height } = target._fullLayout ?? {};
-    // plotly counts parts of pixels.
+    // plotly has fractions of pixels.
     const fits = Math.abs(width - target.clientWidth) < 1
       && Math.abs(height - target.clientHeight) < 1;
     if (width && target.clientWidth && !fits) Plotly.Plots.resize(target);
   }));
 
-  // A color is {css: name} in a figure, so that no text of a robot can be taken for one.
+  // A color is {css: name} in a figure: no text of a robot can be mistaken for one.
   function resolve(value, style) {
     if (Array.isArray(value)) return value.map((part) => resolve(part, style));
     if (value === null || typeof value !== 'object') return value;
@@ -38,7 +38,7 @@ const plots = (() => {
     return Plotly.react(place, data, layout, config);
   }
 
-  // Buttons that show the same thing in another measure.
+  // Buttons that switch the measure of a plot.
   function withModes(id, figure) {
     const box = document.querySelector(`[data-modes="${id}"]`);
     figure.modes.forEach((mode, place) => {
@@ -61,7 +61,7 @@ const plots = (() => {
     return draw(id, figure);
   }
 
-  // Curve and histogram of the joint that is chosen, here or at the arm.
+  // Curve and histogram of the joint chosen here or at the arm.
   function oneJoint(figures) {
     const select = document.getElementById('joint-choice');
     figures.names.forEach((name, place) => select.add(new Option(name, place)));
@@ -74,7 +74,7 @@ const plots = (() => {
     document.addEventListener('joint', ({ detail }) => show(detail.place));
   }
 
-  // Tell all parts of the page which joint is looked at.
+  // Notify all parts of the page of the chosen joint.
   function choose(place, from) {
     document.dispatchEvent(new CustomEvent('joint', { detail: { place, from } }));
   }
@@ -90,7 +90,7 @@ const plots = (() => {
     draw('plot-mass', figures.mass);
     oneJoint(figures.joint);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
-    // Paper is white.
+    // Print in light colors.
     const paper = (on) => () => {
       document.documentElement.classList.toggle('paper', on);
       redraw();

@@ -1,4 +1,4 @@
-// Begins when everything is there: the tables first, they are what counts.
+// Starts the page: the tables first, so that they work even if a plot fails.
 (() => {
   'use strict';
 
@@ -8,7 +8,7 @@
   const page = JSON.parse(data.textContent);
   plots.start(page.figures);
   arm.start(page.arm);
-  // The pose that asks most of any joint says more than the neutral one.
+  // The worst pose of the most loaded joint is more informative than the neutral one.
   plots.choose(page.figures.joint.first, 'start');
   document.documentElement.dataset.drawn = 'yes';
 })();

@@ -1,4 +1,4 @@
-// Tables can be sorted by a column and filtered by words; without this script they are complete.
+// Sorting and filtering of tables, which are complete without this script.
 const tables = (() => {
   'use strict';
 
@@ -10,7 +10,7 @@ const tables = (() => {
     return value === '' ? null : Number(value);
   }
 
-  // What is missing comes last, up and down.
+  // Missing values come last in both directions.
   function compare(a, b) {
     if (a === null || b === null) return (a === null) - (b === null);
     if (typeof a === 'string') return a.localeCompare(b, 'en', { numeric: true });
@@ -68,7 +68,7 @@ const tables = (() => {
     show();
   }
 
-  // Findings can be shown by severity.
+  // Filter of the findings by severity.
   function makeChoice(box) {
     const chips = [...box.querySelectorAll('button')];
     chips.forEach((chip) => chip.addEventListener('click', () => {

@@ -1,4 +1,0 @@
-"""What is looked at if nobody says otherwise."""
-
-SAMPLES = 4096
-SEED = 1
