@@ -137,7 +137,7 @@ class DynamicsNode(Node):
         if self.parameters['machine_code']:
             # In another process; until then the general kernel answers. Also for payloads, because
             # no process should be started when one is set and the arm floats.
-            robot.model.specialize(wait=False, loads=True)
+            robot.model.specialize(wait=False, with_payload_code=True)
         is_first = self._shared.robot is None
         self._shared.robot = robot
         self.path.use(robot.buffer)
@@ -154,24 +154,6 @@ class DynamicsNode(Node):
         )
         for warning in robot.model.warnings:
             self.logger.warning(warning)
-
-    def _check_lengths(self, values: Mapping[str, Any], robot: ActiveRobot) -> None:
-        count = len(robot.joint_names)
-        for name in (
-            'effort_limits',
-            'effort_rate_limits',
-            'velocity_limits',
-            'effort_scale',
-            *PER_JOINT,
-            'friction.smoothing_velocity',
-        ):
-            allowed = (0, 1, count) if name == 'friction.smoothing_velocity' else (0, count)
-            if len(values[name]) not in allowed:
-                raise ParameterError(
-                    f'{name}: expected {count} numbers for '
-                    f'{", ".join(robot.joint_names)}, or none; got '
-                    f'{len(values[name])}'
-                )
 
     def _check_against_robot(self, values: Mapping[str, Any]) -> None:
         robot, before = self._shared.robot, self.parameters.values

@@ -24,7 +24,7 @@ from ..support.callback_errors import logged
 from ..support.qos import COMMAND, NO_EVENTS, OUTPUT_STATE, RESULT
 from ..support.throttling import Throttle
 from ...safety import OutputState
-from ...safety.effort_guard import EffortGuard, GuardSettings, LOOK_EVERY, PERIODS
+from ...safety.effort_guard import EffortGuard, GuardSettings, MAX_TICK, PERIODS
 
 # Period of the search for publishers and listeners, s.
 GRAPH_EVERY = 0.5
@@ -94,7 +94,7 @@ class EffortGuardNode(Node):
         )
         self._controller = ControllerParameters(self, self._output)
         # On the steady clock, which also runs while simulation time stands still.
-        self._look_timer = self.create_timer(LOOK_EVERY, self._look, clock=steady)
+        self._look_timer = self.create_timer(MAX_TICK, self._look, clock=steady)
         self.create_timer(GRAPH_EVERY, self._look_at_graph, clock=steady)
         self.create_timer(1.0, self._every_second, clock=steady)
         self._reset_service = self.create_service(Trigger, '~/reset', self._reset)
@@ -165,7 +165,9 @@ class EffortGuardNode(Node):
         self._publisher.publish(Float64MultiArray(layout=self._layout, data=array('d', output)))
 
     def _schedule_look(self) -> None:
-        self._look_timer.timer_period_ns = math.ceil(self.guard.next_look(time.monotonic()) * 1e9)
+        self._look_timer.timer_period_ns = math.ceil(
+            self.guard.next_tick_in(time.monotonic()) * 1e9
+        )
         self._look_timer.reset()
 
     def _changed(self, state: OutputState, reason: str) -> None:

@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from collections.abc import Mapping
-from typing import Any
-
 from ..parameters.declaration import check_each, DOUBLE, DOUBLES, Parameter, ParameterError, TEXT
 from ...safety.effort_guard import GuardSettings
 

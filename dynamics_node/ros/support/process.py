@@ -11,7 +11,7 @@ import threading
 import time
 from types import FrameType
 
-# Signals within this time count as one, s: a terminal and `ros2 launch` both send SIGINT.
+# Signals closer together than this count as one: a terminal and `ros2 launch` both send SIGINT, s.
 SAME_SIGNAL = 0.5
 # Longest wait at the end for a terminal or a pipe that is not read, s.
 CLOSE_WITHIN = 0.5

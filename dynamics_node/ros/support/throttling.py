@@ -12,9 +12,6 @@ if TYPE_CHECKING:
 # Longest age of a cached subscriber count, s: far below the duration of discovery.
 SUBSCRIBER_COUNT_AGE = 0.05
 
-# Period of the queries for subscribers, s: far below the time of discovery.
-ASK_EVERY = 0.05
-
 
 class Throttle:
     """
@@ -27,7 +24,7 @@ class Throttle:
 
     def __init__(self, period: float, clock: Callable[[], float] = time.monotonic) -> None:
         """
-        Let the first message pass.
+        Start due.
 
         Parameters
         ----------
