@@ -32,7 +32,7 @@ def found(node):
         return None
 
 
-def test_the_guard_does_what_it_is_allowed_and_no_more(client, start):
+def test_the_policy_allows_exactly_the_graph_of_the_guard(client, start):
     start(module='dynamics_node.ros.effort_guard.main')
     controller = rclpy.create_node('forward_effort_controller', context=client.context)
     controller.create_subscription(

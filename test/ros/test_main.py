@@ -1,4 +1,4 @@
-"""The loop of the process: what it leaves behind when everything else has failed."""
+"""The main loop: efforts in force and exit code after failures and signals."""
 
 import time
 from types import SimpleNamespace
@@ -18,7 +18,7 @@ EFFORT = np.array([5.0])
 
 
 class Output:
-    """A command output that only notes what is sent."""
+    """A command output that records its commands."""
 
     def __init__(self, stop_ramp=0.2):
         settings = OutputSettings(100.0, 0.0, stop_ramp, 'ramp_to_zero')
@@ -106,7 +106,7 @@ def test_an_executor_that_keeps_failing_stops_the_output_and_ends_with_an_error(
     assert any('the executor keeps failing' in text for text in log)
 
 
-def test_an_error_now_and_then_does_not_end_it():
+def test_occasional_errors_do_not_end_the_process():
     signals = SimpleNamespace(name='', count=0, call=lambda wake: None)
     unit, output, log = loop(lambda spun: spun % 2, signals)
 
@@ -122,7 +122,7 @@ def test_an_error_now_and_then_does_not_end_it():
     assert not any('keeps failing' in text for text in log)
 
 
-def test_an_effort_that_is_left_is_no_success():
+def test_a_remaining_effort_is_reported_by_the_exit_code():
     signals = SimpleNamespace(name='SIGTERM', count=1, call=lambda wake: None)
     unit, output, log = loop(lambda spun: False, signals)
     output.is_broken = True
@@ -130,7 +130,7 @@ def test_an_effort_that_is_left_is_no_success():
     assert any('the last efforts may stay in force: a: ' in text for text in log)
 
 
-def test_efforts_that_a_lost_controller_holds_are_no_success():
+def test_efforts_of_a_lost_controller_are_reported_by_the_exit_code():
     signals = SimpleNamespace(name='SIGTERM', count=1, call=lambda wake: None)
     unit, output, log = loop(lambda spun: False, signals)
     output.path.lose_controller(time.monotonic(), '/c is inactive')
@@ -138,7 +138,7 @@ def test_efforts_that_a_lost_controller_holds_are_no_success():
     assert any('the last efforts may stay in force: a: 5' in text for text in log)
 
 
-def test_a_second_signal_hastens_the_stop():
+def test_a_second_signal_shortens_the_stop():
     signals = SimpleNamespace(name='SIGTERM', count=1, call=lambda wake: None)
     unit, _, log = loop(lambda spun: False, signals, stop_ramp=60.0)
 
