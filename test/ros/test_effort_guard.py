@@ -437,39 +437,3 @@ def test_the_guard_imports_no_dynamics():
     )
     run = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
     assert run.stdout == '[]\n'
-
-
-def test_an_unread_log_does_not_block_the_process():
-    code = (
-        'import os, sys\n'
-        'from dynamics_node.ros.support.process import UnblockedOutput\n'
-        'output = UnblockedOutput(2)\n'
-        'for i in range(3000):\n'
-        '    try:\n'
-        '        os.write(2, b"x" * 1000)\n'
-        '    except BlockingIOError:\n'
-        '        pass\n'
-        'output.close()\n'
-        'print("done", flush=True)'
-    )
-    process = subprocess.Popen(
-        [sys.executable, '-c', code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-    with process:
-        assert process.stdout.readline() == b'done\n'  # while stderr is not read
-        said = process.stderr.read()
-    assert process.returncode == 0
-    assert len(said) > 60_000
-
-
-def test_logged_output_arrives():
-    code = (
-        'import os\n'
-        'from dynamics_node.ros.support.process import UnblockedOutput\n'
-        'output = UnblockedOutput(2)\n'
-        'os.write(2, b"first\\n")\n'
-        'output.close()\n'
-        'os.write(2, b"second\\n")'
-    )
-    run = subprocess.run([sys.executable, '-c', code], capture_output=True, check=True)
-    assert run.stderr == b'first\nsecond\n'

@@ -1,9 +1,10 @@
-"""Signals that end the process: counted, and ending a wait outside Python."""
+"""The process: signals that end it, output that never blocks it, and its options."""
 
 import subprocess
 import sys
 import time
 
+from dynamics_node.ros.support.command_line import parse
 import pytest
 
 CODE = """
@@ -70,3 +71,57 @@ def test_sigint_counts_in_a_background_job_where_shells_ignore_it():
 def test_a_wait_that_no_longer_exists_is_no_error():
     wake = "raise RuntimeError('destroyed')"
     assert run('INT', 'time.sleep(0.1)', wake=wake) == (0, 'SIGINT\n', '')
+
+
+OUTPUT = """
+import os
+from dynamics_node.ros.support.process import UnblockedOutput
+output = UnblockedOutput(2)
+{write}
+output.close()
+{after}
+"""
+
+
+def test_an_unread_log_does_not_block_the_process():
+    write = """
+for _ in range(3000):
+    try:
+        os.write(2, b"x" * 1000)
+    except BlockingIOError:
+        pass
+"""
+    code = OUTPUT.format(write=write, after='print("done", flush=True)')
+    process = subprocess.Popen(
+        [sys.executable, '-c', code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    with process:
+        assert process.stdout.readline() == b'done\n'  # while stderr is not read
+        log = process.stderr.read()
+    assert process.returncode == 0
+    assert len(log) > 60_000
+
+
+def test_logged_output_arrives():
+    code = OUTPUT.format(write='os.write(2, b"first\\n")', after='os.write(2, b"second\\n")')
+    run = subprocess.run([sys.executable, '-c', code], capture_output=True, check=True)
+    assert run.stderr == b'first\nsecond\n'
+
+
+@pytest.mark.parametrize(
+    'arguments, executor, raw_states',
+    [
+        ('', 'rclpy', True),
+        ('--executor events --no-raw-states --ros-args -r __ns:=/a', 'events', False),
+        ('--ros-args -p a:=1 -- --executor=events --no-raw-states --other', 'events', False),
+    ],
+)
+def test_the_options_are_read_and_arguments_of_ros_are_ignored(arguments, executor, raw_states):
+    options = parse(['node', *arguments.split()])
+    assert vars(options) == {'executor': executor, 'raw_states': raw_states}
+
+
+def test_an_unknown_executor_is_refused(capsys):
+    with pytest.raises(SystemExit):
+        parse(['node', '--executor', 'fast'])
+    assert 'choose from' in capsys.readouterr().err
