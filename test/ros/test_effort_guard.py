@@ -159,7 +159,7 @@ def test_silence_and_invalid_commands_end_in_a_fade(active):
     fade = [item for item in active.received if item[1] != list(FULL)]
     assert_ramp(fade, FULL)
     assert 'not finite' in active.reason
-    # What goes on with the whole effort does not pass, until it is allowed to.
+    # Commands that continue with the whole effort pass only after a reset.
     active.received.clear()
     active.until(
         lambda: 'too far from zero' in active.reason or 'under way' in active.reason, active.send
@@ -244,18 +244,8 @@ def floating(guard, start):
         bench.publish(['hinge'], [0.5], [0.0])
 
     bench.until_heard(state)
-    bench.until(
-        lambda: (
-            bench.call(
-                GetParameters,
-                '/effort_guard/get_parameters',
-                GetParameters.Request(names=['joints']),
-                state,
-            ).values
-        ),
-        state,
-    )
-    bench.during(3 * TIMEOUT, state)  # what comes right after the node was found did not begin
+    bench.until(lambda: joints_of(bench, state), state)
+    bench.during(3 * TIMEOUT, state)  # commands right after the discovery of the node do not pass
     answer = bench.enable(True, state)
     assert answer.success, answer.message
     bench.until(lambda: bench.output_is('ACTIVE')() and bench.is_in('ACTIVE')(), state)
@@ -290,7 +280,7 @@ def test_a_node_that_hangs_ends_in_a_ramp_and_its_return_makes_no_step(floating)
     assert_ramp(fade_after(bench, bench.is_in('FAULT'), state), bench.full)
     bench.received.clear()
     node.send(signal.SIGCONT)
-    # It stops by itself, if it notices, or when it is asked to; the guard is armed by the end.
+    # It stops by itself after its suspension, or on request; the guard is ready after that.
     bench.until(lambda: bench.enable(False, state).success, state)
     bench.until(bench.is_in('READY'), state)
     assert not any(any(efforts) for _, efforts in bench.received)
@@ -332,7 +322,7 @@ def test_the_node_sees_the_controller_behind_the_guard(bench, start):
         '[elbow], here it is [hinge]'
     ) in message
     assert '/effort_guard drives position, expected effort' in message
-    # They are the controller's: who sets them here would deceive the node.
+    # Mirrored parameters of the controller cannot be set at the guard.
     request = SetParameters.Request(
         parameters=[Parameter('joints', value=['hinge']).to_parameter_msg()]
     )
@@ -350,11 +340,10 @@ def test_controllers_that_contradict_each_other_are_both_named(bench, guard):
     bench.until(lambda: joints_of(bench) == ['a', 'b'])
 
 
-def joints_of(bench):
-    """Return what the guard says of the controller's joints."""
-    values = bench.call(
-        GetParameters, '/effort_guard/get_parameters', GetParameters.Request(names=['joints'])
-    ).values
+def joints_of(bench, action=None):
+    """Return the joints of the controller, mirrored by the guard."""
+    request = GetParameters.Request(names=['joints'])
+    values = bench.call(GetParameters, '/effort_guard/get_parameters', request, action).values
     return list(values[0].string_array_value) if values else []
 
 
