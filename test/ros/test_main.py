@@ -73,6 +73,11 @@ class Executor:
     add_node = remove_node = lambda self, node: None
 
 
+def signaled(name='', count=0):
+    """Return signals of a process."""
+    return SimpleNamespace(name=name, count=count, call=lambda wake: None)
+
+
 def loop(fails, signals=None, **options):
     """Return a loop with an output that sends its whole effort, the output and the log."""
     output, log = Output(**options), []
@@ -84,7 +89,7 @@ def loop(fails, signals=None, **options):
         create_guard_condition=lambda _: SimpleNamespace(trigger=None),
         destroy_node=lambda: None,
     )
-    signals = signals or SimpleNamespace(name='', count=0, call=lambda wake: None)
+    signals = signals or signaled()
     return main._Loop(node, Executor(fails), signals), output, log
 
 
@@ -107,7 +112,7 @@ def test_an_executor_that_keeps_failing_stops_the_output_and_ends_with_an_error(
 
 
 def test_occasional_errors_do_not_end_the_process():
-    signals = SimpleNamespace(name='', count=0, call=lambda wake: None)
+    signals = signaled()
     unit, output, log = loop(lambda spun: spun % 2, signals)
 
     def fails(spun):
@@ -123,23 +128,21 @@ def test_occasional_errors_do_not_end_the_process():
 
 
 def test_a_remaining_effort_is_reported_by_the_exit_code():
-    signals = SimpleNamespace(name='SIGTERM', count=1, call=lambda wake: None)
-    unit, output, log = loop(lambda spun: False, signals)
+    unit, output, log = loop(lambda spun: False, signaled('SIGTERM', 1))
     output.is_broken = True
     assert unit.run() == 1
     assert any('the last efforts may stay in force: a: ' in text for text in log)
 
 
 def test_efforts_of_a_lost_controller_are_reported_by_the_exit_code():
-    signals = SimpleNamespace(name='SIGTERM', count=1, call=lambda wake: None)
-    unit, output, log = loop(lambda spun: False, signals)
+    unit, output, log = loop(lambda spun: False, signaled('SIGTERM', 1))
     output.path.lose_controller(time.monotonic(), '/c is inactive')
     assert unit.run() == 1
     assert any('the last efforts may stay in force: a: 5' in text for text in log)
 
 
 def test_a_second_signal_shortens_the_stop():
-    signals = SimpleNamespace(name='SIGTERM', count=1, call=lambda wake: None)
+    signals = signaled('SIGTERM', 1)
     unit, _, log = loop(lambda spun: False, signals, stop_ramp=60.0)
 
     def second(spun):
