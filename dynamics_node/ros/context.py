@@ -1,4 +1,4 @@
-"""What all parts of the node share: the ROS node, the parameters and the robot in force."""
+"""The context shared by all parts of the node: ROS node, parameters and robot in force."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 @dataclass
 class NodeContext:
     """
-    Shared by all parts of the node.
+    The ROS node, its parameters, and the robot in force.
 
     Attributes
     ----------

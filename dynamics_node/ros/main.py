@@ -1,28 +1,41 @@
 """The executable `dynamics_node`: start, spin, and leave the arm in a defined state."""
 
+from __future__ import annotations
+
 import gc
 import os
 import sys
 import threading
 import time
 import traceback
+from typing import TYPE_CHECKING
 
 from .support.process import Signals, UnblockedOutput
 
-# Time that a stop may take after the first signal and after the second, s; launch kills after 5.
+if TYPE_CHECKING:
+    import argparse
+
+    from rclpy.executors import Executor
+
+    from .node import DynamicsNode
+
+# Longest duration of the stop after the first signal, s; launch kills after 5 s.
 STOP_WITHIN = 2.5
+# Longest duration of the stop after the second signal, s.
 HURRY_WITHIN = 0.3
+# Time after the first signal at which the process ends, whatever the state of the output, s.
 GIVE_UP_AFTER = 3.0
 # Longest wait of the loop during the stop, s.
 STOP_SLICE = 0.01
-# An executor that raises at every call for this long, and this many times, has failed.
+# Duration of uninterrupted exceptions after which an executor has failed, s.
 FAILING_FOR = 0.5
+# Number of uninterrupted exceptions, at least, of a failed executor.
 MAX_FAILURES = 5
-# Scipy, which only some services need, is loaded this long after the start, s.
+# Time after the start at which scipy is loaded, which only some services need, s.
 LOAD_AFTER = 3.0
 
 
-def main(args=None):
+def main(args: list[str] | None = None) -> int:
     """
     Run the node until a signal asks it to end.
 
@@ -38,7 +51,7 @@ def main(args=None):
         if it left an effort in force.
 
     """
-    # Before rclpy: importing takes seconds, and Ctrl-C may come meanwhile.
+    # Before rclpy is imported: that takes seconds, in which Ctrl-C may arrive.
     signals = Signals()
     if os.isatty(2):
         os.environ.setdefault('RCUTILS_COLORIZED_OUTPUT', '1')
@@ -51,8 +64,8 @@ def main(args=None):
             output.close()
 
 
-def _run(args, signals):
-    gc.disable()  # until everything is loaded: importing only allocates
+def _run(args: list[str] | None, signals: Signals) -> int:
+    gc.disable()  # until everything is loaded: imports allocate much and release nothing
     import rclpy
     import rclpy.logging
     from rclpy.signals import SignalHandlerOptions
@@ -70,16 +83,18 @@ def _run(args, signals):
         return 1
     code = 0
     try:
-        if node is not None:
+        if node is not None and executor is not None:
             code = _Loop(node, executor, signals).run()
     finally:
         rclpy.try_shutdown()
     return code
 
 
-def _start(signals, options):
-    # No node if a signal came first. The compiled kernels and the URDF parser are loaded here,
-    # before the first callback could wait for them.
+def _start(
+    signals: Signals, options: argparse.Namespace
+) -> tuple[DynamicsNode | None, Executor | None]:
+    # Without a node if a signal came first. Compiled kernels and URDF parser are loaded here, so
+    # that no callback waits for them.
     from .node import DynamicsNode
     from .support.executor import make_executor
     from ..dynamics import RobotModel
@@ -96,28 +111,28 @@ def _start(signals, options):
 class _Loop:
     """Spins the node, and brings the arm to rest at the end."""
 
-    def __init__(self, node, executor, signals):
+    def __init__(self, node: DynamicsNode, executor: Executor, signals: Signals) -> None:
         self._node = node
         self._executor = executor
         self._signals = signals
         self._failures = 0
         self._failing_since = 0.0
-        # The events executor must wait with a timeout: no task ends its wait.
+        # The wait of the events executor needs a timeout: a signal may not end it.
         from rclpy.executors import SingleThreadedExecutor
 
         self._timeout = None if isinstance(executor, SingleThreadedExecutor) else 0.1
 
-    def run(self):
+    def run(self) -> int:
         """Spin until a signal comes or the executor fails; return the exit code."""
         node, executor = self._node, self._executor
         executor.add_node(node)
-        # A task: rclpy goes on to wait after a wake-up without one, and a guard condition of the
-        # node's own would cost time in every wait.
+        # A task, because rclpy continues to wait after a wake-up without one, and a guard
+        # condition of the node would cost time in every wait.
         self._signals.call(lambda: executor.create_task(_do_nothing))
-        _spare_the_garbage_collector()
-        later = threading.Timer(LOAD_AFTER, _load_the_rest)
-        later.daemon = True
-        later.start()
+        _freeze_startup_objects()
+        loading = threading.Timer(LOAD_AFTER, _load_scipy)
+        loading.daemon = True
+        loading.start()
         while not self._signals.name and not self._has_failed():
             self._spin_once(self._timeout)
         if self._has_failed():
@@ -139,8 +154,8 @@ class _Loop:
             self._executor.spin_once(timeout)
             self._failures = 0
         except Exception as error:
-            # The node's callbacks raise nothing, but rclpy has some of its own: a parameter
-            # of an unknown type raises in its parameter services.
+            # Not from the callbacks of the node, which are guarded, but from those of rclpy: a
+            # parameter of an unknown type raises in its parameter services.
             self._failures += 1
             if self._failures == 1:
                 self._failing_since = time.monotonic()
@@ -148,14 +163,14 @@ class _Loop:
             else:
                 time.sleep(0.001)
 
-    def _bring_to_rest(self, reason):
-        # Returns whether no effort is left in force.
+    def _bring_to_rest(self, reason: str) -> bool:
+        # Returns whether the last effort is zero and the subscribers have it.
         output, path = self._node.output, self._node.path
         path.close(time.monotonic(), reason, STOP_WITHIN)
-        seen, deadline = self._signals.count, time.monotonic() + GIVE_UP_AFTER
+        handled, deadline = self._signals.count, time.monotonic() + GIVE_UP_AFTER
         while path.is_on and time.monotonic() < deadline:
-            if self._signals.count > seen:
-                seen = self._signals.count
+            if self._signals.count > handled:
+                handled = self._signals.count
                 self._node.logger.warning(
                     'second signal: the efforts go to zero within '
                     f'{HURRY_WITHIN:g} s; now ' + path.output.limiter.describe_last()
@@ -166,7 +181,7 @@ class _Loop:
             else:
                 self._spin_once(STOP_SLICE)
             try:
-                output.tick()  # also where the executor runs no timer any more
+                output.tick()  # in case the executor no longer runs timers
             except Exception as error:  # the context has been shut down: nothing can be sent
                 self._node.logger.error(f'the stop cannot be sent: {error}')
                 break
@@ -182,19 +197,19 @@ class _Loop:
         return is_at_rest
 
 
-def _do_nothing():
+def _do_nothing() -> None:
     pass
 
 
-def _spare_the_garbage_collector():
-    # Objects of the start live as long as the process. Without this, half a million of them
-    # (numba's) would be traversed in the middle of a control cycle.
+def _freeze_startup_objects() -> None:
+    # Objects of the start-up live as long as the process. Unfrozen, a garbage collection would
+    # traverse all of them, half a million of numba alone, in the middle of a control cycle.
     gc.freeze()
     gc.enable()
 
 
-def _load_the_rest():
-    # An import by the first service that needs it would block the control loop for half a
+def _load_scipy() -> None:
+    # Imported by the first service that needs it, it would block the control loop for half a
     # second.
     import scipy.interpolate
     import scipy.spatial.transform  # noqa: F401

@@ -1,7 +1,11 @@
 """`DynamicsNode`: joint states in, gravity torque and commands out."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 import math
 import time
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 from rclpy.node import Node
@@ -21,7 +25,7 @@ from .support.callback_groups import ServiceGroup
 from .support.description_source import DescriptionSource
 from .support.hints import Hints
 from .support.throttling import Throttle
-from .torque_path.active_robot import read_robot
+from .torque_path.active_robot import ActiveRobot, read_robot
 from .torque_path.command_output import CommandOutput, output_settings
 from .torque_path.controller_check import Controllers
 from .torque_path.enabling import Enabling
@@ -31,18 +35,22 @@ from .torque_path.publisher_monitor import PublisherMonitor
 from ..errors import DynamicsError
 from ..safety import EffortLimiter, GravityChange
 
-# Period of the checks of publishers and controllers, s. They run after a joint state, or at the
-# next tick of the output, because a wake-up of their own would cost as much as a state.
+if TYPE_CHECKING:
+    from builtin_interfaces.msg import Time
+
+# Period of the search for other publishers and controllers, s. It runs after a joint state,
+# because a separate wake-up costs as much as a state, or else at the next tick of the output.
 CHECK_EVERY = 0.2
+# Period of diagnostics and hints, s.
 SECOND = 1.0
-# Shortest time between two warnings about unmeasured joints, s.
+# Shortest time between two warnings about joints that are not measured, s.
 SILENT_EVERY = 10.0
 
 
 class DynamicsNode(Node):
     """Computes the dynamics of one robot from its description and its joint states."""
 
-    def __init__(self, raw_states=False, **options):
+    def __init__(self, raw_states: bool = False, **options: Any) -> None:
         """
         Create all parts of the node; the output is off.
 
@@ -61,7 +69,7 @@ class DynamicsNode(Node):
             If the description given by a parameter is refused.
 
         """
-        # Before rclpy creates the parameter services.
+        # Needed when rclpy creates the parameter services, inside its constructor.
         self.service_group = ServiceGroup(self._is_driving)
         super().__init__('dynamics_node', **options)
         self.logger = self.get_logger()
@@ -92,21 +100,21 @@ class DynamicsNode(Node):
         self._protection = Protection(context, self.output, monitor, controllers)
         self.source.begin()
 
-    def create_service(self, *arguments, callback_group=None, **options):
-        """Create a service as rclpy does; by default it waits for the torque, see ServiceGroup."""
+    def create_service(self, *arguments: Any, callback_group: Any = None, **options: Any) -> Any:
+        """Create a service as rclpy does, by default in the `ServiceGroup` of the node."""
         return super().create_service(
             *arguments, callback_group=callback_group or self.service_group, **options
         )
 
-    def on_internal_error(self, message):
-        """Stop the output: a callback on the torque path has failed."""
+    def on_internal_error(self, message: str) -> None:
+        """Stop the output after an exception in a callback of the torque path."""
         self.output.on_internal_error(message)
 
     def _is_driving(self):
         return self.path.is_driving
 
-    def _described(self, source, origin):
-        # True if it was accepted or refused; False if it must be offered again.
+    def _described(self, source: str | bytes, origin: str) -> bool:
+        # Returns True if the description was accepted or refused, False if it has to wait.
         if self.path.is_on:
             self.logger.warning(
                 f'new robot description from {origin} waits until the output is '
@@ -127,8 +135,8 @@ class DynamicsNode(Node):
             self.logger.error(f'robot description from {origin} refused, {kept}: {error}')
             return True
         if self.parameters['machine_code']:
-            # In another process; the general kernel computes meanwhile. Also the variant for
-            # payloads: no compiler may start while the arm floats.
+            # In another process; until then the general kernel answers. Also for payloads, because
+            # no process should be started when one is set and the arm floats.
             robot.model.specialize(wait=False, with_payload_code=True)
         is_first = self._shared.robot is None
         self._shared.robot = robot
@@ -139,7 +147,7 @@ class DynamicsNode(Node):
             self.output.announce()
         return True
 
-    def _announce(self, robot, origin):
+    def _announce(self, robot: ActiveRobot, origin: str) -> None:
         self.logger.info(
             f'robot description from {origin}: {robot.model}; joints: '
             f'{", ".join(robot.joint_names)}'
@@ -147,7 +155,7 @@ class DynamicsNode(Node):
         for warning in robot.model.warnings:
             self.logger.warning(warning)
 
-    def _check_against_robot(self, values):
+    def _check_against_robot(self, values: Mapping[str, Any]) -> None:
         robot, before = self._shared.robot, self.parameters.values
         if robot is None:
             return
@@ -156,30 +164,38 @@ class DynamicsNode(Node):
         if self.path.is_on:
             check_change(robot, model, values, before, self._gravity_change, time.monotonic())
 
-    def _reconfigured(self, values, before):
+    def _reconfigured(self, values: Mapping[str, Any], before: Mapping[str, Any]) -> None:
         if self._shared.robot is not None:
             self._shared.robot.configure(values, before)
             if values['gravity'] != before['gravity']:
                 self._gravity_change.accept(time.monotonic(), values['gravity'])
         else:
-            self.source.offer_again()  # it may have been refused for a parameter
+            self.source.offer_again()  # a parameter may have been the reason for its refusal
         self._configure(values)
 
-    def _configure(self, values):
+    def _configure(self, values: Mapping[str, Any]) -> None:
         robot = self._shared.robot
         if robot is not None:
             self.path.configure(
                 time.monotonic(),
                 output_settings(values),
                 robot.compensation(values),
-                _limiter(robot, values),
+                effort_limiter(robot, values),
                 robot.motion_limits(values['velocity_limits']),
             )
         self.output.configured()
         self._external_torque.configure()
 
-    def on_state(self, stamp):
-        """Publish the results of a joint state; its command has already been published."""
+    def on_state(self, stamp: Time) -> None:
+        """
+        Publish the results of a joint state, after its command.
+
+        Parameters
+        ----------
+        stamp : builtin_interfaces.msg.Time
+            Of the joint state, or of its arrival.
+
+        """
         robot, effort = self._shared.robot, self.path.gravity_torque
         assert robot is not None  # without a robot there is no state
         if not all(map(math.isfinite, effort.tolist())):
@@ -189,8 +205,8 @@ class DynamicsNode(Node):
                 )
             return
         if not self._has_states:
-            # Not `once=True`: rclpy looks through the source files for the caller at every
-            # call, and that took longer than everything else in the callback.
+            # Not `once=True`: rclpy searches the source files for the caller at every call, which
+            # took longer than the rest of the callback.
             self._has_states = True
             self.logger.info('joint states arrive: publishing gravity torque')
         self._results.publish(robot, stamp, effort)
@@ -200,7 +216,7 @@ class DynamicsNode(Node):
 
     def _check_if_due(self):
         now = time.monotonic()
-        # A new subscriber receives the full effort until it is noticed.
+        # A new controller receives the whole effort until the check has found it.
         if now < self._next_check and not self.output.has_new_listener():
             return
         self._next_check = now + CHECK_EVERY
@@ -211,11 +227,11 @@ class DynamicsNode(Node):
 
     @logged
     def _every_second(self):
-        # A request, also one to disable, counts more than the parameter.
+        # A request to ~/enable, also to disable, overrides the parameter.
         if self._wants_enable and not self._enabling.was_asked and self.executor is not None:
             self.executor.create_task(self._enable_on_start)
         if not self.path.is_on:
-            self.source.offer_pending()  # a description that came while the output was on
+            self.source.offer_pending()  # a description received while the output was on
         self._hints.give()
         self.states.adapt_queue()
         if self._shared.robot is not None:
@@ -224,14 +240,14 @@ class DynamicsNode(Node):
         self._diagnostics.measure()
         self._diagnostics.publish()
 
-    def _warn_of_silent_joints(self, robot):
-        # They get no effort, but gravity depends on where they are.
+    def _warn_of_silent_joints(self, robot: ActiveRobot) -> None:
+        # They get no effort, but gravity depends on their positions.
         silent = self.path.is_driving and robot.stale_others(
             robot.selection.index, time.monotonic(), self.parameters['state_timeout']
         )
         if silent and self._silent.is_due():
             self.logger.warning(
-                f'joint_states say nothing of {", ".join(silent)}: the efforts '
+                f'joint_states do not contain {", ".join(silent)}: the efforts '
                 'take such a joint where it was last measured, or neutral'
             )
 
@@ -251,7 +267,17 @@ class DynamicsNode(Node):
         self._diagnostics.publish()
 
 
-def _limiter(robot, values):
+def effort_limiter(robot: ActiveRobot, values: Mapping[str, Any]) -> EffortLimiter:
+    """
+    Return the `EffortLimiter` of the parameters; without rate limits, full effort takes 0.1 s.
+
+    Parameters
+    ----------
+    robot : ActiveRobot
+    values : mapping of str to Any
+        Of the parameters.
+
+    """
     limits = robot.effort_limits(values['effort_limits'])
     rates, scale = values['effort_rate_limits'], values['effort_scale']
     return EffortLimiter(

@@ -1,4 +1,4 @@
-"""The robot in force: what may be asked of it, and what it refuses."""
+"""The robot in force: limits, measured states and refusals."""
 
 from dynamics_node import RobotModel
 from dynamics_node.ros.parameters.table import check_all
@@ -12,7 +12,7 @@ TEXT = PENDULUM.read_text()
 
 def test_a_mass_matrix_that_is_not_positive_definite_is_noticed():
     assert ActiveRobot(RobotModel.from_urdf(TEXT), ()).is_mass_matrix_positive_definite()
-    # A rod of no mass: nothing that a torque could accelerate in a known way.
+    # A rod without mass, whose acceleration is undefined.
     massless = TEXT.replace('<mass value="3"/>', '<mass value="0"/>')
     for axis in ('ixx', 'iyy', 'izz'):
         start = massless.index(f'{axis}="') + len(axis) + 2
@@ -55,7 +55,7 @@ def test_the_measured_position_is_refused_while_a_chosen_joint_is_not_fresh():
 
 
 @pytest.mark.filterwarnings('ignore:overflow')  # numbers that no payload has
-def test_a_torque_that_is_no_number_is_above_every_limit():
+def test_a_torque_that_is_not_finite_is_above_every_limit():
     robot, values = ActiveRobot(RobotModel.from_urdf(ARM7), ()), check_all({})
     robot.buffer.update(0.0, list(robot.joint_names), [0.02] * len(robot.joint_names))
     assert robot.over_limits(values) == ''

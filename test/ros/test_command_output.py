@@ -1,4 +1,4 @@
-"""The command topic over DDS: silent until asked, ramped, limited, and stopped in order."""
+"""The command topic over DDS: silent until enabled, ramped, limited, and stopped in order."""
 
 import functools
 import itertools
@@ -9,18 +9,19 @@ from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node import RobotModel
 from dynamics_node.ros.context import NodeContext
-from dynamics_node.ros.node import _limiter
+from dynamics_node.ros.node import effort_limiter
 from dynamics_node.ros.parameters.table import check_all
 from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.ros.torque_path.command_output import CommandOutput, output_settings
 from dynamics_node.safety.effort_output import MAX_RAMP_STEP
 import numpy as np
 import pytest
-from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.msg import Parameter, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import SetBool
+from support.processes import PATIENCE
 from support.robots import ARM7, PENDULUM
 
 TOPIC = 'forward_effort_controller/commands'
@@ -29,13 +30,46 @@ HOLD = 0.5 * 3 * 0.7 * 9.81  # the pendulum's gravity torque at 0, N m
 
 @pytest.fixture
 def start(start):
-    """Start the node with a timeout that a busy machine does not trip by itself."""
+    """Start the node with a timeout for a busy machine."""
     return functools.partial(start, state_timeout=0.5)
 
 
-def level(client):
+@pytest.fixture
+def publish(client):
     """Return an action that publishes the pendulum at rest, level."""
     return lambda: client.publish(['hinge'], [0.0], [0.0])
+
+
+@pytest.fixture
+def drive(client, start, publish):
+    """Return a function that starts a node with a pendulum and enables its output."""
+
+    def drive(action=publish, **parameters):
+        process = start(robot_description_file=PENDULUM, **parameters)
+        client.record_commands()
+        enabled(client, action)
+        return process
+
+    return drive
+
+
+def efforts_of(client):
+    """Return the recorded efforts of the pendulum, N m."""
+    return np.array([effort for _, [effort] in client.commands])
+
+
+def ended(client, process, action, timeout=6.0):
+    """Wait for the end of the node, which must leave zero; return exit code and output."""
+    client.until(lambda: process.process.poll() is not None, action, timeout=timeout)
+    client.during(0.2)
+    assert not client.commands or client.commands[-1][1] == [0.0]
+    return process.wait()
+
+
+def assert_ramped_to_zero(efforts):
+    """Check that the efforts end at zero, without a step."""
+    assert efforts[-1] == 0.0
+    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
 
 
 def enabled(client, action):
@@ -49,7 +83,7 @@ def became_active(client, action):
     """Enable the output; return whether it became ACTIVE, or False if states were late."""
     before = len(client.outputs)
     answer = client.enable(True, action)
-    # On a machine that stops this process for a tenth of a second that is the right answer.
+    # A busy machine may stop this process for a tenth of a second.
     if not answer.success and 'no joint state within' in answer.message:
         return False
     assert answer.success, answer.message
@@ -64,16 +98,17 @@ def became_active(client, action):
 
 
 @pytest.mark.parametrize('options', [(), ('--no-raw-states',)])
-def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(client, start, options):
+def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(
+    client, start, publish, options
+):
     start(robot_description_file=PENDULUM, options=options)
     client.record_commands()
-    publish = level(client)
     client.until(lambda: client.node.count_publishers(TOPIC), publish)
     client.during(1.0, publish)
     assert client.commands == []
     enabled(client, publish)
     client.during(0.2, publish)
-    efforts = np.array([effort for _, [effort] in client.commands])
+    efforts = efforts_of(client)
     assert efforts[0] < 0.2 * HOLD
     assert (np.diff(efforts) >= 0).all()
     assert efforts[-1] == pytest.approx(HOLD)
@@ -82,36 +117,26 @@ def test_nothing_is_published_until_enabled_then_it_ramps_up_and_down(client, st
     assert client.enable(False, publish).success
     client.until(client.output_is('READY'), publish)
     client.during(0.3, publish)
-    efforts = np.array([effort for _, [effort] in client.commands])
+    efforts = efforts_of(client)
     assert (np.diff(efforts) <= 0).all()
     assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
     assert efforts[-1] == 0.0
     duration = client.commands[-1][0] - client.commands[0][0]
     assert duration == pytest.approx(1.0, abs=0.4)
-    assert [output.name for output in client.outputs] == [
-        'READY',
-        'STARTING',
-        'ACTIVE',
-        'STOPPING',
-        'READY',
-    ]
+    states = [output.name for output in client.outputs]
+    assert states == ['READY', 'STARTING', 'ACTIVE', 'STOPPING', 'READY']
     client.commands.clear()
     client.during(0.5, publish)
     assert client.commands == []
 
 
 @pytest.mark.parametrize('options', [(), ('--no-raw-states',)])
-def test_stale_states_stop_by_the_ramp_and_latch_a_fault(client, start, options):
-    start(robot_description_file=PENDULUM, state_timeout=0.1, options=options)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
+def test_stale_states_stop_by_the_ramp_and_latch_a_fault(client, drive, publish, options):
+    drive(state_timeout=0.1, options=options)
     client.commands.clear()
     client.until(client.output_is('FAULT'))  # the joint states have ended
     client.during(0.2)
-    efforts = np.array([effort for _, [effort] in client.commands])
-    assert efforts[-1] == 0.0
-    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
+    assert_ramped_to_zero(efforts_of(client))
     assert 'joint_states stale: last 0.1' in client.outputs[-1].reason
     assert 'limit 0.100 s' in client.outputs[-1].reason
     # States alone do not clear it; a request does.
@@ -120,27 +145,14 @@ def test_stale_states_stop_by_the_ramp_and_latch_a_fault(client, start, options)
     enabled(client, publish)
 
 
-def test_a_timeout_that_becomes_shorter_holds_at_once(client, start):
-    start(robot_description_file=PENDULUM, state_timeout=10.0)
-    client.record_commands()
-    enabled(client, level(client))
-    request = SetParameters.Request(
-        parameters=[
-            Parameter(
-                name='state_timeout',
-                value=(ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=0.2)),
-            )
-        ]
-    )
-    [result] = client.call(
-        SetParameters, '/dynamics_node/set_parameters', request, level(client)
-    ).results
-    assert result.successful
+def test_a_shorter_timeout_takes_effect_at_once(client, drive, publish):
+    drive(state_timeout=10.0)
+    assert client.set_node_parameter('state_timeout', 0.2, publish).successful
     client.until(client.output_is('FAULT'), timeout=5.0)
     assert 'limit 0.200 s' in client.outputs[-1].reason
 
 
-def test_a_listener_more_is_noticed_at_once_and_one_less_is_none(client):
+def test_a_new_listener_is_noticed_at_once_but_not_its_end(client):
     output = CommandOutput(NodeContext(client.node, check_all({})), lambda: None)
     first = client.node.create_subscription(Float64MultiArray, TOPIC, lambda _: None, 1)
     client.until(output.has_new_listener)
@@ -154,7 +166,7 @@ def test_a_listener_more_is_noticed_at_once_and_one_less_is_none(client):
     client.until(output.has_new_listener)
 
 
-def test_parameters_set_without_end_do_not_put_the_watchdog_off(client):
+def test_repeated_parameter_changes_do_not_postpone_the_watchdog(client):
     robot = ActiveRobot(RobotModel.from_urdf(PENDULUM), ())
     values = check_all({})
     output = CommandOutput(NodeContext(client.node, values), lambda: None)
@@ -163,7 +175,7 @@ def test_parameters_set_without_end_do_not_put_the_watchdog_off(client):
         time.monotonic(),
         output_settings(values),
         robot.compensation(values),
-        _limiter(robot, values),
+        effort_limiter(robot, values),
         robot.motion_limits(()),
     )
     robot.buffer.update(time.monotonic(), ['hinge'], [0.0])
@@ -179,7 +191,7 @@ def test_parameters_set_without_end_do_not_put_the_watchdog_off(client):
     assert 'stale' in output.path.output.machine.reason
 
 
-def test_half_of_the_joints_alone_do_not_keep_the_output_alive(client, start):
+def test_states_of_some_joints_do_not_keep_the_output_on(client, start):
     arm = RobotModel.from_urdf(ARM7)
     start(robot_description_file=ARM7)
     client.record_commands()
@@ -189,7 +201,7 @@ def test_half_of_the_joints_alone_do_not_keep_the_output_alive(client, start):
     assert 'joint_states stale: last 0.5' in client.outputs[-1].reason
 
 
-def test_joints_that_get_no_effort_are_named_when_they_fall_silent(client, start):
+def test_joints_without_effort_are_named_when_their_states_end(client, start):
     arm = RobotModel.from_urdf(ARM7)
     process = start(robot_description_file=ARM7, joints='[shoulder_yaw, shoulder_pitch]')
     statuses = client.listen(DiagnosticArray, '/diagnostics')
@@ -209,19 +221,16 @@ def test_joints_that_get_no_effort_are_named_when_they_fall_silent(client, start
     process.send(signal.SIGINT)
     _, output = process.wait()
     assert (
-        'joint_states say nothing of upper_arm_roll, elbow_pitch, forearm_roll, wrist_pitch, '
+        'joint_states do not contain upper_arm_roll, elbow_pitch, forearm_roll, wrist_pitch, '
         'wrist_roll, left_finger_slide: the efforts take such a joint where it was last '
         'measured'
     ) in output
-    assert output.count('say nothing of') == 1
+    assert output.count('do not contain') == 1
 
 
-def test_efforts_are_clamped_to_the_limit_and_not_for_long(client, start):
-    start(robot_description_file=PENDULUM, effort_limits='[4]')
-    client.record_commands()
-    publish = level(client)
+def test_efforts_are_clamped_to_the_limit_and_not_for_long(client, drive, publish):
     # Nearly upright the arm can hold itself; it is then moved to where it cannot.
-    enabled(client, lambda: client.publish(['hinge'], [1.3], [0.0]))
+    drive(lambda: client.publish(['hinge'], [1.3], [0.0]), effort_limits='[4]')
     for i in range(130):
         client.during(0.01, lambda q=1.3 - 0.01 * i: client.publish(['hinge'], [q], [0.0]))
     client.during(0.3, publish)
@@ -233,12 +242,8 @@ def test_efforts_are_clamped_to_the_limit_and_not_for_long(client, start):
     assert client.commands[-1][1] == [0.0]
 
 
-def test_garbage_while_active_never_reaches_the_command(client, start):
-    start(robot_description_file=PENDULUM)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
-
+def test_garbage_while_active_never_reaches_the_command(client, drive, publish):
+    drive()
     # One at a time: the queue has one place, so of several at once only the last arrives.
     sequence = itertools.cycle(
         [
@@ -265,19 +270,13 @@ def test_garbage_while_active_never_reaches_the_command(client, start):
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_while_active_ramps_down_and_exits_with_0(client, start, number):
-    process = start(robot_description_file=PENDULUM)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
+def test_a_signal_while_active_ramps_down_and_exits_with_0(client, drive, publish, number):
+    process = drive()
     client.commands.clear()
     process.send(number)
-    client.until(lambda: process.process.poll() is not None, publish, timeout=6.0)
-    client.during(0.2)
-    efforts = np.array([effort for _, [effort] in client.commands])
-    assert efforts[-1] == 0.0
-    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
-    assert process.wait()[0] == 0
+    code, _ = ended(client, process, publish)
+    assert code == 0
+    assert_ramped_to_zero(efforts_of(client))
 
 
 def test_a_signal_while_idle_exits_with_0_at_once(client, start):
@@ -318,12 +317,11 @@ def test_the_command_follows_the_order_of_joints_and_hold_keeps_the_last_effort(
     assert client.commands[-1][1] == [0.0, 0.0, 0.0]
 
 
-def test_a_new_description_waits_until_the_output_is_off(client, start):
+def test_a_new_description_waits_until_the_output_is_off(client, start, publish):
     process = start()
     client.record_commands()
     text = PENDULUM.read_text()
     client.description.publish(String(data=text))
-    publish = level(client)
     client.until(client.output_is('READY'), publish)
     enabled(client, publish)
     heavier = text.replace('<mass value="3"/>', '<mass value="5"/>')
@@ -337,8 +335,8 @@ def test_a_new_description_waits_until_the_output_is_off(client, start):
     client.during(0.2, publish)
     assert client.commands[-1][1] == [pytest.approx(5 / 3 * HOLD)]
     process.send(signal.SIGINT)
-    client.until(lambda: process.process.poll() is not None, publish)
-    assert 'waits until the output is off' in process.wait()[1]
+    _, output = ended(client, process, publish, PATIENCE)
+    assert 'waits until the output is off' in output
 
 
 def test_enabling_is_refused_with_every_reason(client, start, tmp_path):
@@ -352,9 +350,8 @@ def test_enabling_is_refused_with_every_reason(client, start, tmp_path):
     assert 'no effort limit for hinge: set the parameter effort_limits' in answer.message
 
 
-def test_enabling_is_refused_while_others_publish(client, start):
+def test_enabling_is_refused_while_others_publish(client, start, publish):
     start(robot_description_file=PENDULUM)
-    publish = level(client)
     client.until(client.states.get_subscription_count, publish)
     client.during(0.3, publish)
     rival = client.node.create_publisher(Float64MultiArray, TOPIC, 1)
@@ -384,13 +381,13 @@ def test_without_a_robot_enabling_is_refused_and_disabling_is_answered(client, s
     assert answer.message == 'already off: READY'
 
 
-def test_enabling_on_start_waits_until_nothing_speaks_against_it(client, start):
+def test_enabling_on_start_waits_until_all_checks_pass(client, start, publish):
     start(robot_description_file=PENDULUM, enable_on_start='true')
     client.record_commands()
     client.until(client.states.get_subscription_count)
     client.until(client.output_is('READY'))
-    client.until(client.output_is('ACTIVE'), level(client))
-    answer = client.enable(True, level(client))
+    client.until(client.output_is('ACTIVE'), publish)
+    answer = client.enable(True, publish)
     assert answer.success
     assert 'already enabled' in answer.message
 
@@ -411,12 +408,9 @@ def test_two_broadcasters_at_the_same_moment_do_not_starve_each_other(client, st
     assert client.outputs[-1].name == 'ACTIVE'
 
 
-def test_a_parameter_of_an_unknown_type_does_not_end_the_process(client, start):
+def test_a_parameter_of_an_unknown_type_does_not_end_the_process(client, drive, publish):
     # rclpy's own parameter service raises on it.
-    process = start(robot_description_file=PENDULUM)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
+    process = drive()
     request = SetParameters.Request(
         parameters=[Parameter(name='gravity', value=ParameterValue(type=77))]
     )
@@ -427,35 +421,32 @@ def test_a_parameter_of_an_unknown_type_does_not_end_the_process(client, start):
     assert process.process.poll() is None
     assert client.outputs[-1].name == 'ACTIVE'
     process.send(signal.SIGINT)
-    client.until(lambda: process.process.poll() is not None, publish)
-    code, output = process.wait()
+    code, output = ended(client, process, publish, PATIENCE)
     assert code == 0
     assert 'error in rclpy' in output
     process.expects_traceback = True
 
 
-def test_a_request_to_disable_counts_more_than_enable_on_start(client, start):
+def test_a_request_to_disable_overrides_enable_on_start(client, start, publish):
     start(robot_description_file=PENDULUM, enable_on_start='true')
     client.record_commands()
     assert client.enable(False).success
     client.until(client.states.get_subscription_count)
-    client.during(2.5, level(client))
+    client.during(2.5, publish)
     assert client.commands == []
     assert client.outputs[-1].name == 'READY'
 
 
-def test_a_flood_of_calls_does_not_take_the_arms_commands(client, start):
-    start(robot_description_file=PENDULUM)
-    client.record_commands()
+def test_a_flood_of_calls_does_not_delay_the_commands(client, drive, publish):
     published, answers = [], []
 
-    def publish():
-        level(client)()
+    def count_and_publish():
+        publish()
         published.append(1)
 
-    enabled(client, publish)
+    drive(count_and_publish)
     service = client.node.create_client(GetDynamics, '/dynamics_node/get_dynamics')
-    client.until(service.service_is_ready, publish)
+    client.until(service.service_is_ready, count_and_publish)
 
     def ask(future=None):
         if future is not None:
@@ -466,71 +457,54 @@ def test_a_flood_of_calls_does_not_take_the_arms_commands(client, start):
 
     for _ in range(20):  # in flight at any time
         ask()
-    client.during(0.3, publish)
+    client.during(0.3, count_and_publish)
     client.commands.clear(), published.clear(), answers.clear()
-    client.during(1.5, publish)
+    client.during(1.5, count_and_publish)
     assert client.outputs[-1].name == 'ACTIVE'
     assert len(answers) > 2 * len(published)
     assert set(answers) == {True, False}
     assert len(client.commands) > 0.8 * len(published)
 
 
-def test_two_signals_right_after_each_other_are_one(client, start):
-    # As `ros2 launch` without a terminal sends them: it must not cut the stop short.
-    process = start(robot_description_file=PENDULUM)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
+def test_two_signals_right_after_each_other_are_one(client, drive, publish):
+    # As `ros2 launch` without a terminal sends them: the second must not cut the stop short.
+    process = drive()
     client.commands.clear()
     process.send(signal.SIGINT)
     client.during(0.05, publish)
     process.send(signal.SIGINT)
-    client.until(lambda: process.process.poll() is not None, publish, timeout=6.0)
-    client.during(0.2)
-    efforts = np.array([effort for _, [effort] in client.commands])
-    assert efforts[-1] == 0.0
-    assert np.abs(np.diff(efforts)).max() < 0.2 * HOLD
-    assert process.wait()[0] == 0
+    code, _ = ended(client, process, publish)
+    assert code == 0
+    assert_ramped_to_zero(efforts_of(client))
 
 
-def test_a_second_signal_sends_zero_sooner_and_says_what_was_left(client, start):
-    process = start(robot_description_file=PENDULUM, stop_ramp=60.0)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
+def test_a_second_signal_sends_zero_sooner_and_logs_the_effort(client, drive, publish):
+    process = drive(stop_ramp=60.0)
     process.send(signal.SIGTERM)
     client.during(0.8, publish)
     process.send(signal.SIGTERM)
     begin = time.monotonic()
     client.until(lambda: process.process.poll() is not None, publish, timeout=6.0)
     assert time.monotonic() - begin < 1.5
-    client.during(0.2)
-    assert client.commands[-1][1] == [0.0]
-    code, output = process.wait()
+    code, output = ended(client, process, publish)
     assert code == 0
+    assert client.commands[-1][1] == [0.0]
     assert 'second signal: the efforts go to zero within 0.3 s; now hinge: ' in output
 
 
 @pytest.mark.parametrize('number', [signal.SIGHUP, signal.SIGQUIT])
-def test_a_terminal_that_closes_stops_the_arm_like_sigterm(client, start, number):
+def test_a_terminal_that_closes_stops_the_arm_like_sigterm(client, drive, publish, number):
     if signal.getsignal(number) == signal.SIG_IGN:
         pytest.skip('these tests run under nohup, which the node respects')
-    process = start(robot_description_file=PENDULUM, stop_ramp=0.3)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
+    process = drive(stop_ramp=0.3)
     process.send(number)
-    client.until(lambda: process.process.poll() is not None, publish, timeout=6.0)
-    client.during(0.2)
+    code, _ = ended(client, process, publish)
+    assert code == 0
     assert client.commands[-1][1] == [0.0]
-    assert process.wait()[0] == 0
 
 
-def test_nothing_is_enabled_after_a_signal_however_often_it_is_asked_for(client, start):
-    process = start(robot_description_file=PENDULUM, stop_ramp=0.2)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
+def test_nothing_is_enabled_after_a_signal(client, drive, publish):
+    process = drive(stop_ramp=0.2)
     service = client.node.create_client(SetBool, '/dynamics_node/enable')
     client.until(service.service_is_ready, publish)
 
@@ -541,20 +515,18 @@ def test_nothing_is_enabled_after_a_signal_however_often_it_is_asked_for(client,
         ask()
     client.during(0.2, publish)
     process.send(signal.SIGTERM)
-    client.until(lambda: process.process.poll() is not None, publish, timeout=8.0)
-    client.during(0.2)
+    code, _ = ended(client, process, publish, timeout=8.0)
+    assert code == 0
     assert client.commands[-1][1] == [0.0]
-    assert process.wait()[0] == 0
 
 
-def test_a_process_that_stood_still_goes_on_by_a_fault_and_not_by_a_step(client, start):
-    process = start(robot_description_file=PENDULUM)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
+def test_a_process_that_was_suspended_continues_with_a_fault_and_without_a_step(
+    client, drive, publish
+):
+    process = drive()
     client.until(lambda: client.commands[-1][1] == [pytest.approx(HOLD)], publish)
     process.send(signal.SIGSTOP)
-    # The arm is moved meanwhile: upright nothing holds it.
+    # The arm is moved meanwhile: upright, it needs no effort.
     upright = np.pi / 2
 
     def moved():
@@ -564,15 +536,14 @@ def test_a_process_that_stood_still_goes_on_by_a_fault_and_not_by_a_step(client,
     client.commands.clear()
     process.send(signal.SIGCONT)
     client.until(client.output_is('FAULT'), moved)
-    efforts = np.array([HOLD, *[effort for _, [effort] in client.commands]])
+    efforts = np.array([HOLD, *efforts_of(client)])
     assert np.abs(np.diff(efforts)).max() < 0.1 * HOLD
     assert efforts[-1] == 0.0
 
 
-def test_active_is_said_when_the_full_effort_is_out(client, start):
+def test_active_is_published_with_the_full_effort(client, start, publish):
     start(robot_description_file=PENDULUM, effort_rate_limits='[8.0]')
     client.record_commands()
-    publish = level(client)
     client.until_heard(publish)
     answer = client.enable(True, publish)
     assert 'full effort in 0.5 s (start_ramp)' in answer.message
@@ -586,27 +557,13 @@ def test_active_is_said_when_the_full_effort_is_out(client, start):
     assert count <= 5
 
 
-def test_a_payload_that_comes_while_active_goes_out_over_the_start_ramp(client, start):
-    start(robot_description_file=PENDULUM)
-    client.record_commands()
-    publish = level(client)
-    enabled(client, publish)
+def test_a_change_while_active_is_blended_over_the_start_ramp(client, drive, publish):
+    drive()
     client.until(lambda: client.commands[-1][1] == [pytest.approx(HOLD)], publish)
-    request = SetParameters.Request(
-        parameters=[
-            Parameter(
-                name='compensate.gravity',
-                value=(ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=False)),
-            )
-        ]
-    )
     client.commands.clear()
-    [result] = client.call(
-        SetParameters, '/dynamics_node/set_parameters', request, publish
-    ).results
-    assert result.successful
+    assert client.set_node_parameter('compensate.gravity', False, publish).successful
     client.until(lambda: client.commands[-1][1] == [pytest.approx(0.0)], publish)
-    efforts = np.array([effort for _, [effort] in client.commands])
+    efforts = efforts_of(client)
     # A pause of a busy machine counts as a fifth of this ramp at most.
     assert np.abs(np.diff(efforts)).max() <= (MAX_RAMP_STEP / 0.5 + 0.02) * HOLD
     assert np.sum((efforts > 0.05 * HOLD) & (efforts < 0.95 * HOLD)) >= 4

@@ -1,4 +1,4 @@
-"""What the listeners of the command topic say about their joints and lifecycle, over DDS."""
+"""Joints and lifecycle of the listeners of the command topic, over DDS."""
 
 from dynamics_node.ros.torque_path.controller_check import Controllers
 from lifecycle_msgs.msg import State, TransitionEvent
@@ -42,7 +42,7 @@ def spinning(others):
 
 
 def watched(client, others, deaf=()):
-    """Return controllers that have heard of all listeners, and an answer of `others`."""
+    """Return controllers that know all listeners, and the answers of `others`."""
     unit = Controllers(client.node, '/efforts')
     names = {f'/{other.node.get_name()}' for other in (*others, *deaf)}
     answering = {f'/{other.node.get_name()}' for other in others}
@@ -57,7 +57,7 @@ def watched(client, others, deaf=()):
     return unit
 
 
-def test_without_a_listener_there_is_nothing_to_wait_for(client):
+def test_without_a_listener_nothing_is_pending(client):
     unit = Controllers(client.node, '/efforts')
     unit.update()
     assert not unit.is_waiting()
@@ -74,15 +74,13 @@ def test_without_a_listener_there_is_nothing_to_wait_for(client):
         {'joints': 7},
     ],
 )
-def test_the_same_joints_in_the_same_order_and_listeners_without_joints_pass(
-    client, listeners, parameters
-):
+def test_equal_joints_and_listeners_without_joints_pass(client, listeners, parameters):
     unit = watched(client, [listeners('controller', **parameters)])
     assert unit.refusals(JOINTS) == unit.notes() == []
     assert not unit.is_waiting()
 
 
-def test_other_joints_another_order_and_another_interface_are_refused_in_words(client, listeners):
+def test_other_joints_another_order_and_another_interface_are_refused(client, listeners):
     unit = watched(
         client,
         [
@@ -101,7 +99,7 @@ def test_other_joints_another_order_and_another_interface_are_refused_in_words(c
     ]
 
 
-def test_a_listener_that_does_not_answer_is_named_and_does_not_hide_the_others(client, listeners):
+def test_a_listener_without_an_answer_is_named_and_does_not_hide_the_others(client, listeners):
     deaf = listeners('a_deaf_one', joints=['elbow', 'shoulder'])
     plain = listeners('b_plain_one', start_parameter_services=False)
     other = listeners('z_controller', joints=['elbow', 'shoulder'])
@@ -110,13 +108,13 @@ def test_a_listener_that_does_not_answer_is_named_and_does_not_hide_the_others(c
     assert [note.split(',')[0] for note in sorted(unit.notes())] == ['/a_deaf_one', '/b_plain_one']
     [refusal] = unit.refusals(JOINTS)
     assert refusal.startswith('/z_controller has another order')
-    # It is asked on: an answer that comes late counts, too.
+    # The requests continue: a late answer counts, too.
     client.until(
         lambda: (unit.update(), len(unit.refusals(JOINTS)) == 2)[1], spinning([deaf, other])
     )
 
 
-def test_it_can_be_asked_again(client, listeners):
+def test_changed_parameters_are_read_again(client, listeners):
     controller = listeners('controller', joints=['elbow', 'shoulder'])
     unit = watched(client, [controller])
     assert unit.refusals(JOINTS)
@@ -126,7 +124,7 @@ def test_it_can_be_asked_again(client, listeners):
     assert unit.refusals(JOINTS) == []
 
 
-def test_a_listener_whose_name_is_not_known_yet_is_waited_for(client, monkeypatch):
+def test_a_listener_without_a_discovered_name_is_pending(client, monkeypatch):
     class Info:
         node_name, node_namespace = '_NODE_NAME_UNKNOWN_', '_NODE_NAMESPACE_UNKNOWN_'
         endpoint_gid = (1,)
@@ -177,7 +175,7 @@ def test_a_controller_that_is_deactivated_is_noticed_by_its_transition_events(cl
 
 
 @pytest.mark.parametrize('label, is_refused', [('inactive', True), ('active', False)])
-def test_the_lifecycle_is_asked_for_where_the_listener_tells_it(
+def test_the_lifecycle_is_read_from_the_service_of_the_listener(
     client, listeners, label, is_refused
 ):
     controller = listeners('controller', joints=list(JOINTS))
@@ -203,7 +201,7 @@ def test_the_lifecycle_is_asked_for_where_the_listener_tells_it(
     )
 
 
-def test_a_listener_that_goes_is_forgotten(client, listeners):
+def test_a_listener_that_leaves_is_removed(client, listeners):
     controller = listeners('controller', joints=['other'])
     unit = watched(client, [controller])
     controller.node.destroy_subscription(controller.subscription)
@@ -212,15 +210,13 @@ def test_a_listener_that_goes_is_forgotten(client, listeners):
     assert unit.refusals(JOINTS) == []
 
 
-def test_a_controller_that_is_started_again_is_noticed_beside_what_is_left_of_it(
-    client, listeners
-):
+def test_a_restarted_controller_is_noticed_beside_its_remains(client, listeners):
     controller = listeners('controller', joints=list(JOINTS))
     plot = listeners('plot', start_parameter_services=False)
     unit = watched(client, [controller], [plot])
     unit.update()
     assert unit.renewed == [] and unit.takes_commands()
-    # A killed process stays in the graph: here the first one simply goes on.
+    # A killed process stays in the graph; here the first one simply continues.
     again = listeners('controller', joints=list(JOINTS))
 
     def is_renewed():
@@ -228,8 +224,8 @@ def test_a_controller_that_is_started_again_is_noticed_beside_what_is_left_of_it
         return unit.renewed == ['/controller']
 
     client.until(is_renewed)
-    assert not unit.takes_commands()  # the new one has not got the last commands
-    assert unit.is_waiting()  # it is asked for its own parameters
+    assert not unit.takes_commands()  # the new one has not received the last commands
+    assert unit.is_waiting()  # its own parameters are requested
 
     def has_answered():
         unit.update()
@@ -254,7 +250,7 @@ def test_a_controller_that_is_started_again_is_noticed_beside_what_is_left_of_it
     client.until(is_there)
 
 
-def test_another_controller_of_the_same_name_is_asked_anew(client, listeners):
+def test_another_controller_of_the_same_name_gets_new_requests(client, listeners):
     controller = listeners('controller', joints=list(JOINTS))
     unit = watched(client, [controller])
     controller.node.destroy_subscription(controller.subscription)

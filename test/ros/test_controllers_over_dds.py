@@ -120,7 +120,7 @@ def test_a_deactivated_controller_ends_the_output_and_the_next_start_begins_ther
     client.until(client.output_is('READY'), controller.publish)
 
 
-def test_a_controller_that_begins_to_listen_later_gets_the_ramp_or_stops_the_output(client, start):
+def test_a_late_controller_gets_the_ramp_or_stops_the_output(client, start):
     start(robot_description_file=PENDULUM, state_timeout=1.0)
     outputs = client.outputs
     client.node.create_subscription(OutputState, '/dynamics_node/state', outputs.append, 10)

@@ -134,7 +134,7 @@ def assert_ramp(received, start, ramp=RAMP):
 # Passing -------------------------------------------------------------------------------------
 
 
-def test_commands_pass_with_their_layout_and_nothing_comes_by_itself(bench, guard):
+def test_commands_pass_with_their_layout_and_nothing_is_sent_without_them(bench, guard):
     controller = bench.add_controller()
     bench.until(bench.is_in('READY'))
     whole = []
@@ -152,14 +152,14 @@ def test_commands_pass_with_their_layout_and_nothing_comes_by_itself(bench, guar
     assert bench.is_in('ACTIVE')()
 
 
-def test_silence_and_what_is_no_command_end_in_a_fade(active):
+def test_silence_and_invalid_commands_end_in_a_fade(active):
     active.received.clear()
     active.until(active.is_in('FAULT'), lambda: active.send((float('nan'), 0.0)))
     active.until(lambda: active.last == [0.0, 0.0])
     fade = [item for item in active.received if item[1] != list(FULL)]
     assert_ramp(fade, FULL)
     assert 'not finite' in active.reason
-    # What goes on with the whole effort does not pass, until it is allowed to.
+    # Commands that continue with the whole effort pass only after a reset.
     active.received.clear()
     active.until(
         lambda: 'too far from zero' in active.reason or 'under way' in active.reason, active.send
@@ -172,7 +172,7 @@ def test_silence_and_what_is_no_command_end_in_a_fade(active):
     assert max(b - a for a, b in itertools.pairwise(efforts)) <= 20.0 * LONGEST_STEP / RAMP + 1e-9
 
 
-def test_a_guard_that_was_stopped_makes_no_step(active, guard):
+def test_a_guard_that_was_suspended_makes_no_step(active, guard):
     other = (-20.0, 4.0)
     guard.send(signal.SIGSTOP)
     active.during(0.5, lambda: active.send(other))
@@ -221,7 +221,7 @@ def test_a_second_signal_is_faster(bench, start):
     assert guard.wait()[0] == 0
 
 
-def test_at_rest_it_ends_at_once(bench, guard):
+def test_a_guard_without_effort_ends_at_once(bench, guard):
     bench.until(bench.is_in('READY'))
     guard.send(signal.SIGTERM)
     assert guard.wait()[0] == 0
@@ -244,18 +244,8 @@ def floating(guard, start):
         bench.publish(['hinge'], [0.5], [0.0])
 
     bench.until_heard(state)
-    bench.until(
-        lambda: (
-            bench.call(
-                GetParameters,
-                '/effort_guard/get_parameters',
-                GetParameters.Request(names=['joints']),
-                state,
-            ).values
-        ),
-        state,
-    )
-    bench.during(3 * TIMEOUT, state)  # what comes right after the node was found did not begin
+    bench.until(lambda: joints_of(bench, state), state)
+    bench.during(3 * TIMEOUT, state)  # commands right after the discovery of the node do not pass
     answer = bench.enable(True, state)
     assert answer.success, answer.message
     bench.until(lambda: bench.output_is('ACTIVE')() and bench.is_in('ACTIVE')(), state)
@@ -290,7 +280,7 @@ def test_a_node_that_hangs_ends_in_a_ramp_and_its_return_makes_no_step(floating)
     assert_ramp(fade_after(bench, bench.is_in('FAULT'), state), bench.full)
     bench.received.clear()
     node.send(signal.SIGCONT)
-    # It stops by itself, if it notices, or when it is asked to; the guard is armed by the end.
+    # It stops by itself after its suspension, or on request; the guard is ready after that.
     bench.until(lambda: bench.enable(False, state).success, state)
     bench.until(bench.is_in('READY'), state)
     assert not any(any(efforts) for _, efforts in bench.received)
@@ -305,7 +295,7 @@ def test_a_node_that_hangs_ends_in_a_ramp_and_its_return_makes_no_step(floating)
     assert abs(bench.received[0][1][0]) < 0.5 * abs(bench.full[0])
 
 
-def test_the_node_is_told_of_the_controller_behind_the_guard(bench, start):
+def test_the_node_sees_the_controller_behind_the_guard(bench, start):
     start(module=MODULE, output_topic='elbow_controller/commands')
     start(robot_description_file=PENDULUM, command_topic=INPUT, state_timeout=10.0)
     bench.node.destroy_publisher(bench.command)  # which the node would refuse
@@ -332,7 +322,7 @@ def test_the_node_is_told_of_the_controller_behind_the_guard(bench, start):
         '[elbow], here it is [hinge]'
     ) in message
     assert '/effort_guard drives position, expected effort' in message
-    # They are the controller's: who sets them here would deceive the node.
+    # Mirrored parameters of the controller cannot be set at the guard.
     request = SetParameters.Request(
         parameters=[Parameter('joints', value=['hinge']).to_parameter_msg()]
     )
@@ -350,18 +340,17 @@ def test_controllers_that_contradict_each_other_are_both_named(bench, guard):
     bench.until(lambda: joints_of(bench) == ['a', 'b'])
 
 
-def joints_of(bench):
-    """Return what the guard says of the controller's joints."""
-    values = bench.call(
-        GetParameters, '/effort_guard/get_parameters', GetParameters.Request(names=['joints'])
-    ).values
+def joints_of(bench, action=None):
+    """Return the joints of the controller, mirrored by the guard."""
+    request = GetParameters.Request(names=['joints'])
+    values = bench.call(GetParameters, '/effort_guard/get_parameters', request, action).values
     return list(values[0].string_array_value) if values else []
 
 
 # Others --------------------------------------------------------------------------------------
 
 
-def test_nothing_begins_where_nothing_listens_or_another_source_sends(bench, guard):
+def test_nothing_starts_without_a_listener_or_with_another_source(bench, guard):
     bench.until(lambda: bench.command.get_subscription_count())
     bench.during(3 * TIMEOUT)
     bench.until(
@@ -386,7 +375,7 @@ def test_nothing_begins_where_nothing_listens_or_another_source_sends(bench, gua
     bench.start()
 
 
-def test_a_second_source_and_slow_commands_are_told_of(active):
+def test_a_second_source_and_slow_commands_are_reported(active):
     health = active.listen(DiagnosticArray, '/diagnostics')
     second = active.node.create_publisher(Float64MultiArray, INPUT, 1)
     active.until(lambda: f'2 publishers on {INPUT} (/test_client)' in active.reason, active.send)
@@ -417,18 +406,18 @@ def test_a_second_source_and_slow_commands_are_told_of(active):
         ({'output_topic': ''}, 'output_topic: expected the name of a topic'),
     ],
 )
-def test_wrong_parameters_are_refused_in_words(given, words):
+def test_wrong_parameters_are_refused_with_a_reason(given, words):
     with pytest.raises(ParameterError) as error:
         check_all(given)
     assert words in str(error.value)
 
 
-def test_a_guard_that_would_hear_itself_does_not_start(start):
+def test_a_guard_with_one_topic_for_both_does_not_start(start):
     code, output = start(module=MODULE, output_topic=INPUT).wait(30.0)
     assert code == 1 and f'both are {INPUT}' in output and 'Traceback' not in output
 
 
-def test_it_needs_nothing_of_the_library():
+def test_the_guard_imports_no_dynamics():
     code = (
         'import sys\n'
         f'import {MODULE}, dynamics_node.ros.effort_guard.node\n'
@@ -437,39 +426,3 @@ def test_it_needs_nothing_of_the_library():
     )
     run = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
     assert run.stdout == '[]\n'
-
-
-def test_a_log_that_is_not_read_does_not_block_it():
-    code = (
-        'import os, sys\n'
-        'from dynamics_node.ros.support.process import UnblockedOutput\n'
-        'output = UnblockedOutput(2)\n'
-        'for i in range(3000):\n'
-        '    try:\n'
-        '        os.write(2, b"x" * 1000)\n'
-        '    except BlockingIOError:\n'
-        '        pass\n'
-        'output.close()\n'
-        'print("done", flush=True)'
-    )
-    process = subprocess.Popen(
-        [sys.executable, '-c', code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-    with process:
-        assert process.stdout.readline() == b'done\n'  # while stderr is not read
-        said = process.stderr.read()
-    assert process.returncode == 0
-    assert len(said) > 60_000
-
-
-def test_what_is_logged_arrives():
-    code = (
-        'import os\n'
-        'from dynamics_node.ros.support.process import UnblockedOutput\n'
-        'output = UnblockedOutput(2)\n'
-        'os.write(2, b"first\\n")\n'
-        'output.close()\n'
-        'os.write(2, b"second\\n")'
-    )
-    run = subprocess.run([sys.executable, '-c', code], capture_output=True, check=True)
-    assert run.stderr == b'first\nsecond\n'

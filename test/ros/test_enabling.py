@@ -1,4 +1,4 @@
-"""What speaks against enabling, and what happens while the controllers are asked."""
+"""The reasons against enabling, and events during the query of the controllers."""
 
 from pathlib import Path
 import time
@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from dynamics_node import RobotModel
 from dynamics_node.kernels.warm_up import warm_up
 from dynamics_node.ros.context import NodeContext
-from dynamics_node.ros.node import _limiter
+from dynamics_node.ros.node import effort_limiter
 from dynamics_node.ros.parameters.table import check_all
 from dynamics_node.ros.torque_path.active_robot import ActiveRobot
 from dynamics_node.ros.torque_path.enabling import Enabling
@@ -38,14 +38,14 @@ class Output:
 
 
 class Controllers:
-    """Controllers that answer when the test says so."""
+    """Controllers whose answers the test controls."""
 
     def __init__(self):
-        self.asked, self.waits = 0, True
-        self.against, self.to_note, self.listeners = [], [], {}
+        self.queries, self.waits = 0, True
+        self.mismatches, self.pending, self.listeners = [], [], {}
 
     def ask_again(self):
-        self.asked += 1
+        self.queries += 1
 
     def update(self):
         pass
@@ -54,10 +54,10 @@ class Controllers:
         return self.waits
 
     def refusals(self, joint_names):
-        return self.against
+        return self.mismatches
 
     def notes(self):
-        return self.to_note
+        return self.pending
 
     def has_listener(self):
         return True
@@ -77,7 +77,7 @@ class Parts(SimpleNamespace):
             time.monotonic(),
             OutputSettings(60.0, 1.0, 1.0, 'ramp_to_zero'),
             self.robot.compensation(self.parameters.values),
-            _limiter(self.robot, self.parameters.values),
+            effort_limiter(self.robot, self.parameters.values),
             self.robot.motion_limits(()),
         )
 
@@ -145,9 +145,9 @@ def parts(client):
     return parts
 
 
-def test_the_output_begins_when_the_controllers_have_nothing_against_it(parts):
+def test_the_output_starts_when_the_controllers_have_answered(parts):
     task = parts.begin()
-    assert parts.controllers.asked == 1
+    assert parts.controllers.queries == 1
     assert not task.done()
     assert parts.output.path.state.name == 'READY'
     parts.controllers.waits = False
@@ -201,7 +201,7 @@ def test_an_arm_that_compensates_itself_is_refused(parts, plugin, is_refused):
         assert parts.enable()[0]
 
 
-def test_gravity_that_points_up_needs_a_yes(parts):
+def test_upward_gravity_needs_a_confirmation(parts):
     parts.set(gravity=[0.0, 0.0, 9.81])
     assert 'points up in the frame of' in parts.enable()[1]
     parts.set(allow_upward_gravity=True)
@@ -215,7 +215,7 @@ def test_gravity_that_points_up_needs_a_yes(parts):
         ({'velocity_limits': [30.0]}, 'velocity_limits of hinge: 30, in the URDF 20'),
     ],
 )
-def test_limits_above_those_of_the_urdf_need_a_yes(parts, changes, what):
+def test_limits_above_those_of_the_urdf_need_a_confirmation(parts, changes, what):
     parts.set(**changes)
     success, message = parts.enable()
     assert not success
@@ -224,11 +224,11 @@ def test_limits_above_those_of_the_urdf_need_a_yes(parts, changes, what):
     assert parts.enable()[0]
 
 
-def test_joints_whose_speed_has_no_limit_are_named(parts):
+def test_joints_without_a_velocity_limit_are_named(parts):
     parts.use(RobotModel.from_urdf(PENDULUM.read_text().replace('velocity="20"', '')))
     parts.fresh(velocities=[0.0])
     assert (
-        'jumps and runaway are not noticed of hinge: the URDF has no velocity limit there; '
+        'jumps and runaway of hinge are not detected: the URDF has no velocity limit there; '
         'set velocity_limits'
     ) in parts.enable()[1]
 
@@ -236,11 +236,11 @@ def test_joints_whose_speed_has_no_limit_are_named(parts):
 def test_missing_velocities_are_named(parts):
     parts.fresh()
     assert (
-        'joint_states have no velocity of hinge: a runaway is noticed only' in (parts.enable()[1])
+        'joint_states have no velocity of hinge: a runaway is detected only' in (parts.enable()[1])
     )
 
 
-def test_joints_that_are_not_chosen_and_were_never_measured_are_named(parts):
+def test_unmeasured_joints_that_are_not_chosen_are_named(parts):
     text = PENDULUM.read_text().replace(
         '</robot>',
         (
@@ -257,7 +257,7 @@ def test_joints_that_are_not_chosen_and_were_never_measured_are_named(parts):
     assert 'taken where last measured, or neutral if never: flap' in parts.enable()[1]
 
 
-def test_an_effort_that_another_process_has_left_is_named(parts):
+def test_an_effort_of_another_process_is_named(parts):
     parts.fresh(velocities=[0.0], efforts=[-9.5])
     assert (
         'joint_states report efforts that this node has not sent (hinge: -9.5): if a '
@@ -270,7 +270,7 @@ def test_a_newer_description_that_was_refused_is_named(parts):
     assert 'a newer robot description was refused (it is not XML)' in parts.enable()[1]
 
 
-def test_every_reason_against_it_is_said_at_once(parts):
+def test_every_reason_is_listed_at_once(parts):
     parts.conflicts.append('1 other publisher')
     parts.descriptions.append('2 publishers on /robot_description')
     parts.robot.buffer.forget()
@@ -282,7 +282,7 @@ def test_every_reason_against_it_is_said_at_once(parts):
             '1 other publisher; 2 publishers on /robot_description'
         ),
     )
-    assert parts.controllers.asked == 0
+    assert parts.controllers.queries == 0
 
 
 def test_a_mass_matrix_that_is_not_positive_definite_is_refused(parts):
@@ -290,13 +290,13 @@ def test_a_mass_matrix_that_is_not_positive_definite_is_refused(parts):
     assert parts.enable()[1].startswith('refused: the mass matrix is not positive definite')
 
 
-def test_what_the_controllers_say_is_refused(parts):
-    parts.controllers.against.append('another order')
+def test_a_mismatch_of_the_controllers_is_refused(parts):
+    parts.controllers.mismatches.append('another order')
     assert parts.enable() == (False, 'refused: another order')
     assert parts.output.path.state.name == 'READY'
 
 
-def test_a_robot_that_changes_while_they_are_asked_is_refused(parts):
+def test_a_robot_that_changes_during_the_query_is_refused(parts):
     task = parts.begin()
     parts.use(RobotModel.from_urdf(Path(PENDULUM).read_text().replace('"hinge"', '"pivot"')))
     parts.fresh()
@@ -309,9 +309,9 @@ def test_a_robot_that_changes_while_they_are_asked_is_refused(parts):
     assert parts.enable()[0]
 
 
-def test_several_requests_at_once_get_one_answer_each(parts):
+def test_simultaneous_requests_get_one_answer_each(parts):
     tasks = [parts.begin(), parts.begin(), parts.begin()]
-    assert parts.controllers.asked == 1
+    assert parts.controllers.queries == 1
     parts.controllers.waits = False
     parts.client.until(lambda: all(task.done() for task in tasks))
     answers = [task.result() for task in tasks]
@@ -319,7 +319,7 @@ def test_several_requests_at_once_get_one_answer_each(parts):
     assert sum(message.startswith('enabled') for _, message in answers) == 1
 
 
-def test_a_request_to_disable_is_the_last_word(parts):
+def test_a_request_to_disable_cancels_the_enabling(parts):
     task = parts.begin()
     assert parts.enabling.disable() == (True, 'already off: READY')
     parts.controllers.waits = False
@@ -328,7 +328,7 @@ def test_a_request_to_disable_is_the_last_word(parts):
     assert parts.output.path.state.name == 'READY'
 
 
-def test_nothing_is_enabled_when_the_process_is_about_to_end(parts):
+def test_enabling_is_refused_during_the_shutdown(parts):
     task = parts.begin()
     parts.output.path.close(time.monotonic(), 'SIGTERM', 2.5)
     parts.controllers.waits = False
@@ -336,7 +336,7 @@ def test_nothing_is_enabled_when_the_process_is_about_to_end(parts):
     assert task.result() == (False, 'refused: the node is shutting down')
 
 
-def test_a_check_of_the_controllers_that_fails_is_an_answer_and_not_a_start(parts):
+def test_an_exception_in_the_query_is_answered_and_nothing_starts(parts):
     def fail():
         raise RuntimeError('no graph')
 

@@ -1,4 +1,4 @@
-"""Services are left out of most waits while efforts are sent, and never for long."""
+"""The service windows while efforts are sent, and the self-test of an executor."""
 
 import contextlib
 from types import SimpleNamespace
@@ -19,29 +19,29 @@ def parts():
     return parts
 
 
-def test_while_the_output_is_off_they_are_always_waited_for(parts):
+def test_services_are_always_open_while_the_output_is_off(parts):
     parts.is_driving = False
     for _ in range(100):
         assert parts.group.can_execute(None)
         parts.now += 0.001
 
 
-def test_while_efforts_are_sent_they_are_waited_for_now_and_then(parts):
-    waited = []
+def test_services_are_open_in_short_windows_while_efforts_are_sent(parts):
+    was_open = []
     for _ in range(1000):
-        # Every service is asked for, in every wait.
+        # Called for every service in every wait.
         answers = {parts.group.can_execute(None) for _ in range(12)}
         assert len(answers) == 1
-        waited.append(answers.pop())
+        was_open.append(answers.pop())
         parts.now += 0.0005
-    share = sum(waited) / len(waited)
+    share = sum(was_open) / len(was_open)
     assert 0.8 * WINDOW / EVERY < share < 1.6 * WINDOW / EVERY
-    runs = ''.join('x' if is_open else '.' for is_open in waited).split('x')
+    runs = ''.join('x' if is_open else '.' for is_open in was_open).split('x')
     closed = max(map(len, runs))
     assert closed * 0.0005 < EVERY
 
 
-def test_requests_that_follow_another_do_not_wait(parts):
+def test_services_stay_open_after_a_request(parts):
     assert parts.group.can_execute(None)
     parts.group.beginning_execution(None)
     for _ in range(20):
@@ -57,13 +57,13 @@ def ros():
     rclpy.shutdown()
 
 
-def test_rclpys_own_is_the_default(ros):
+def test_the_single_threaded_executor_is_the_default(ros):
     assert type(make_executor('rclpy')) is SingleThreadedExecutor
 
 
-# Older ones drop the coroutine of a callback, which is why they are refused.
+# Older versions of it drop the coroutine of a callback, the reason for which they are refused.
 @pytest.mark.filterwarnings('ignore::pytest.PytestUnraisableExceptionWarning')
-def test_the_events_executor_is_used_where_it_is_sound_and_refused_in_words_elsewhere(ros):
+def test_the_events_executor_is_used_or_refused_with_a_reason(ros):
     with contextlib.suppress(UnsoundExecutorError):
         chosen = make_executor('events')
         assert type(chosen).__name__ == 'EventsExecutor'
@@ -72,7 +72,7 @@ def test_the_events_executor_is_used_where_it_is_sound_and_refused_in_words_else
 @pytest.mark.parametrize(
     'broken, problem',
     [
-        # One that never calls anything, and one that does not wait.
+        # One never runs a callback, one raises.
         (lambda self, timeout_sec=None: None, r'no timer and no message and no late answer'),
         (lambda self, timeout_sec=None: 1 / 0, 'ZeroDivisionError'),
     ],
@@ -93,7 +93,7 @@ def test_an_executor_that_computes_while_it_waits_is_refused(ros, monkeypatch):
                     super().spin_once(timeout_sec=0.0)
 
     monkeypatch.setattr(rclpy.experimental, 'EventsExecutor', Busy, raising=False)
-    # Beside other tests it gets a part of a core only.
+    # Beside other tests it gets only a part of a core.
     monkeypatch.setattr(executor, 'BUSY_SHARE', 0.05)
-    with pytest.raises(UnsoundExecutorError, match='it computes while nothing happens'):
+    with pytest.raises(UnsoundExecutorError, match='it uses the processor while it waits'):
         make_executor('events')

@@ -1,7 +1,7 @@
 """
-Faults between a simulated arm and the node, over DDS: what the node says, and what the arm does.
+Faults between a simulated arm and the node, over DDS: reports of the node, motion of the arm.
 
-One robot, one line and, as long as its parameters are the same, one node serve all tests.
+One robot, one relay and, for equal parameters, one node serve all tests.
 
 """
 
@@ -18,11 +18,11 @@ from soak.expected_sag import expected_sag
 from soak.rig import COMMAND_TOPIC, Rig
 from std_msgs.msg import Float64MultiArray
 
-# Shorter than by default, for the tests' sake; the timeout is longer, for a busy machine's.
+# Ramps shorter than by default, for short tests; a longer timeout, for a busy machine.
 TIMEOUT, START_RAMP, STOP_RAMP = 0.5, 0.2, 0.5
-# Where an arm that is held may be pushed to by a message that is nearly right, rad.
+# Largest motion of a held arm after a message that is nearly correct, rad.
 HELD = math.radians(1.0)
-# What a simulation in real time that was late may catch up, s; see demo/timing.py.
+# Largest delay that the real-time simulation catches up, s; see demo/timing.py.
 CATCHES_UP = 0.05
 
 
@@ -47,7 +47,7 @@ def rig(shared):
 
 
 def check_commands(rig):
-    """Every command was one that may reach an arm."""
+    """Every command was allowed for an arm."""
     rig.client.settle()
     assert rig.client.judge.violations == []
 
@@ -62,9 +62,9 @@ def newest_stop(rig):
 
 def assert_it_sank_by_the_ramp(rig):
     """
-    Compare the commands with the ramp, and the arm with MuJoCo's word for what that does to it.
+    Compare the commands with the ramp, and the motion of the arm with MuJoCo under that ramp.
 
-    The arm was held, at rest, before. A drop, or a push by a wrong effort, would be far faster.
+    The arm was held at rest before. A drop, or a push by a wrong effort, would be far faster.
 
     """
     begin, end = newest_stop(rig)
@@ -101,7 +101,7 @@ def check_fading(rig, begin):
 
 
 def assert_it_is_still_held(rig, since, fault=''):
-    """The arm has not moved more than a push by a nearly right message explains."""
+    """The arm has not moved more than a nearly correct message explains."""
     _, position, velocity, _ = rig.client.truth_between(since, rig.client.now)
     assert rig.client.output == 'ACTIVE', f'{fault}: {rig.explain()}'
     assert np.abs(position - position[0]).max() < HELD, fault
@@ -131,7 +131,7 @@ HARMLESS = {
 
 @pytest.fixture
 def unhurried(rig):
-    """Return the rig; the node waits longer, for a machine that stops all for a while."""
+    """Return the rig; the node has a longer timeout, for pauses of a busy machine."""
     rig.client.set_state_timeout(4 * TIMEOUT)
     yield rig
     rig.client.set_state_timeout(TIMEOUT)
@@ -145,7 +145,7 @@ def test_bad_messages_among_good_ones_are_counted_and_do_not_move_the_arm(unhurr
         key = f'rejected: {kind}'
         return kind is None or client.number('joint states', key) > float(before.get(key, 0))
 
-    # Once each; those of which the newest has always won, or that were lost on the way, again.
+    # Once each; again for faults whose messages were all replaced by newer ones, or lost.
     todo = dict(HARMLESS)
     for _ in range(5):
         for fault in todo:
@@ -161,7 +161,7 @@ def test_bad_messages_among_good_ones_are_counted_and_do_not_move_the_arm(unhurr
     raise AssertionError(f'not counted: {todo}')
 
 
-def test_a_short_freeze_of_the_line_is_bridged(unhurried):
+def test_a_short_freeze_of_the_relay_is_bridged(unhurried):
     rig, begin = unhurried, unhurried.client.now
     rig.processes.send('relay', signal.SIGSTOP)
     rig.during(TIMEOUT)
@@ -173,13 +173,13 @@ def test_a_short_freeze_of_the_line_is_bridged(unhurried):
 # What stops it -------------------------------------------------------------------------------
 
 
-def test_silence_stops_it_by_the_ramp(rig):
+def test_silence_stops_the_output_by_the_ramp(rig):
     rig.client.set_fault('silent')
     assert 'joint_states stale: last ' in rig.until_fault()
     assert_it_sank_by_the_ramp(rig)
 
 
-def test_nothing_that_is_not_a_fresh_state_keeps_it_alive(rig):
+def test_only_fresh_states_keep_the_output_on(rig):
     client = rig.client
     faults = (
         'frozen',
@@ -199,7 +199,7 @@ def test_nothing_that_is_not_a_fresh_state_keeps_it_alive(rig):
     assert_it_sank_by_the_ramp(rig)
 
 
-def test_a_frozen_process_stops_it_by_the_ramp(rig):
+def test_a_suspended_relay_stops_the_output_by_the_ramp(rig):
     rig.processes.send('relay', signal.SIGSTOP)
     reason = rig.until_fault()
     rig.processes.send('relay', signal.SIGCONT)
@@ -207,7 +207,7 @@ def test_a_frozen_process_stops_it_by_the_ramp(rig):
     assert_it_sank_by_the_ramp(rig)
 
 
-def test_an_arm_that_is_said_to_have_jumped_is_not_driven(rig):
+def test_an_arm_with_a_reported_jump_is_not_driven(rig):
     before = rig.client.now
     rig.client.set_fault('jump')
     reason = rig.until_fault()
@@ -216,14 +216,14 @@ def test_an_arm_that_is_said_to_have_jumped_is_not_driven(rig):
     assert_it_sank_by_the_ramp(rig)
 
 
-def test_an_arm_that_is_said_to_run_away_is_not_driven(rig):
+def test_an_arm_with_a_reported_runaway_is_not_driven(rig):
     rig.client.set_fault('too_fast')
     reason = rig.until_fault()
     assert 'runaway: shoulder_yaw at 50' in reason
     assert_it_sank_by_the_ramp(rig)
 
 
-def test_a_forgotten_publisher_of_zeros_stops_it(rig):
+def test_a_forgotten_publisher_of_zeros_stops_the_output(rig):
     node, names = rig.client.node, rig.arm.names
     # As joint_state_publisher does it; the arm stands far from zero.
     rival = node.create_publisher(JointState, 'joint_states', 1)
@@ -242,7 +242,7 @@ def test_a_forgotten_publisher_of_zeros_stops_it(rig):
     assert_it_sank_by_the_ramp(rig)
 
 
-def test_another_source_of_efforts_stops_it(rig):
+def test_another_source_of_efforts_stops_the_output(rig):
     rival = rig.client.node.create_publisher(Float64MultiArray, COMMAND_TOPIC, 1)
     try:
         reason = rig.until_fault()
@@ -298,9 +298,9 @@ def test_sigterm_to_the_node_lets_the_arm_sink_by_the_ramp(rig):
 @pytest.fixture
 def patient(shared):
     """
-    Return the rig with a node that suffers several publishers of joint states.
+    Return the rig with a node that allows several publishers of joint states.
 
-    DDS forgets a process that died without a word only after 20 s: until then there are two.
+    DDS removes a killed process only after 20 s: until then there are two.
 
     """
     shared.use_node(allow_several_state_publishers='true')
@@ -309,7 +309,7 @@ def patient(shared):
     check_commands(shared)
 
 
-def test_after_the_death_of_the_line_another_one_may_take_over(patient):
+def test_another_relay_may_take_over_after_the_death_of_the_first(patient):
     patient.processes.end('relay', signal.SIGKILL)
     assert 'joint_states stale: last ' in patient.until_fault()
     assert_it_sank_by_the_ramp(patient)
@@ -374,7 +374,7 @@ def test_simulated_time_may_jump(simulated):
     assert_it_is_still_held(rig, begin)
 
 
-def test_a_million_names_are_not_even_read(simulated):
+def test_a_million_names_are_refused_unread(simulated):
     # A reliable connection delivers the sixteen megabytes that a best-effort one loses.
     rig, client = simulated, simulated.client
     begin = floating(rig)
@@ -385,7 +385,7 @@ def test_a_million_names_are_not_even_read(simulated):
 
 
 def test_the_death_of_the_node_leaves_the_last_effort(simulated):
-    # What the safety section of the README warns of. The last test: DDS takes a while to forget.
+    # See the safety section of the README. The last test, because DDS removes the node late.
     rig, client = simulated, simulated.client
     begin = floating(rig)
     rig.processes.end('node', signal.SIGKILL)

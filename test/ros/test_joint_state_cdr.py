@@ -1,4 +1,4 @@
-"""Bytes that are no joint state are refused before rclpy sees them, and without a line of its."""
+"""Serialized joint states: read like rclpy, and refused before rclpy if they are none."""
 
 import struct
 
@@ -28,7 +28,7 @@ AT_POSITIONS = AT_NAMES + 4 + 8 + 12
 
 
 def with_count(at, count, data=FULL):
-    """Return a message in which one count says something else."""
+    """Return a message with another number as one of its counts."""
     return data[:at] + struct.pack('<I', count) + data[at + 4 :]
 
 
@@ -46,7 +46,7 @@ def test_the_positions_begin_behind_the_names():
 
 
 @pytest.mark.parametrize('length', range(len(FULL)))
-def test_whatever_ends_too_early_is_refused(length):
+def test_truncated_bytes_are_refused(length):
     expected = 'expected plain CDR' if length < 2 else f'got {length} bytes that end too early'
     with pytest.raises(RejectedStateError, match=expected) as caught:
         end_of_names(FULL[:length])
@@ -64,7 +64,7 @@ def test_whatever_ends_too_early_is_refused(length):
     ids=['frame', 'names', 'name', 'positions'],
 )
 @pytest.mark.parametrize('count', [2**32 - 1, 2**31, 2**28, MAX_NAMES + 1])
-def test_a_count_is_not_believed(at, kind, count, capfd):
+def test_an_impossible_count_is_refused(at, kind, count, capfd):
     reader = JointStateReader()
     with pytest.raises(RejectedStateError) as caught:
         reader.read(with_count(at, count))
@@ -80,7 +80,7 @@ def test_another_representation_is_refused(representation):
     assert caught.value.kind == 'unreadable'
 
 
-def test_as_many_numbers_as_names_can_be_are_read():
+def test_the_maximum_number_of_numbers_is_read():
     many = state(name=['a'], position=[1.0] * MAX_NAMES)
     assert len(JointStateReader().read(many).position) == MAX_NAMES
     with pytest.raises(RejectedStateError, match='at most 4096 efforts, got 4097'):
@@ -130,7 +130,7 @@ def test_states_of_the_same_joints_are_read_as_rclpy_reads_them(sequence):
         assert_same(reader.read(data), data)
 
 
-def test_efforts_that_are_cut_off_spoil_no_state():
+def test_truncated_efforts_do_not_invalidate_a_state():
     data = serialize_message(JointState(name=['a'], position=[1.0], effort=[2.0]))
     reader = JointStateReader()
     assert list(reader.read(data).effort) == [2.0]
@@ -139,7 +139,7 @@ def test_efforts_that_are_cut_off_spoil_no_state():
     assert list(read.position) == [1.0] and len(read.effort) == 0
 
 
-def test_the_names_are_read_once(monkeypatch):
+def test_names_are_deserialized_once(monkeypatch):
     reader = JointStateReader()
     message = JointState(name=['a', 'b'], position=[1.0, 2.0])
     reader.read(serialize_message(message))
@@ -155,9 +155,7 @@ def test_the_names_are_read_once(monkeypatch):
 
 
 @pytest.mark.parametrize('frame', ['', 'base_link'])
-def test_more_names_than_any_robot_has_are_refused_before_anything_is_made_of_them(
-    monkeypatch, frame
-):
+def test_too_many_names_are_refused_before_deserialization(monkeypatch, frame):
     def message(count):
         state = JointState(name=['a'] * count)
         state.header.frame_id = frame
@@ -171,7 +169,7 @@ def test_more_names_than_any_robot_has_are_refused_before_anything_is_made_of_th
 
 
 @pytest.mark.parametrize('length', [0, 3, 11, 30, 40, 48, 60])
-def test_what_was_cut_is_refused_and_forgotten(length):
+def test_truncated_states_are_refused_without_aftereffect(length):
     reader = JointStateReader()
     data = serialize_message(JointState(name=['a', 'b'], position=[1.0, 2.0], velocity=[3.0, 4.0]))
     assert list(reader.read(data).velocity) == [3.0, 4.0]

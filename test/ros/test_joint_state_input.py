@@ -1,4 +1,4 @@
-"""Joint states from the topic: what is handed on, what is counted, what is warned about."""
+"""Joint states from the topic: use, counts and warnings."""
 
 from types import SimpleNamespace
 
@@ -23,7 +23,7 @@ LIMITED = (
 
 
 class Receiver:
-    """A node with nothing but the input, in this process."""
+    """A node with only the input, in this process."""
 
     def __init__(self, raw, **overrides):
         self.client = Client(
@@ -88,7 +88,7 @@ def at(client, *positions):
 
 
 def until_received(client, receiver, *positions):
-    """Publish until something was received, then wait until nothing is on its way."""
+    """Publish until a state was received, then wait until none is in transit."""
     receiver.received.clear()
     both = at(client, *positions)
     client.until(lambda: receiver.received, lambda: (both(), receiver.spin()))
@@ -113,12 +113,12 @@ def test_the_newest_state_wins_and_those_before_it_are_counted(client, receiver)
     assert receiver.input.skipped - before == 10
 
 
-def test_a_position_beyond_its_limits_is_computed_with_and_warned_about(client, receiver):
+def test_a_position_beyond_its_limits_is_used_with_a_warning(client, receiver):
     until_received(client, receiver, 1.25)
     assert receiver.warnings == ['beyond the position limits: hinge at 1.25 (limits -1 to 1)']
 
 
-def test_what_is_dropped_is_warned_about_once_a_second_by_its_kind(client, receiver):
+def test_dropped_states_are_warned_about_once_a_second_per_kind(client, receiver):
     until_received(client, receiver, 0.0)
 
     def bad():
@@ -133,7 +133,7 @@ def test_what_is_dropped_is_warned_about_once_a_second_by_its_kind(client, recei
     assert receiver.received == []
 
 
-def test_an_exception_in_the_callback_is_told_and_the_next_state_is_taken(client, receiver):
+def test_an_exception_in_the_callback_is_reported_and_the_next_state_is_used(client, receiver):
     until_received(client, receiver, 0.0)
     receiver.robot.buffer.runaway = lambda: 1 / 0
     client.until(lambda: receiver.errors, lambda: (at(client, 0.0)(), receiver.spin()))
@@ -144,7 +144,7 @@ def test_an_exception_in_the_callback_is_told_and_the_next_state_is_taken(client
     until_received(client, receiver, 0.0)
 
 
-def test_a_stamp_is_handed_on_and_a_missing_one_is_the_arrival(client, receiver):
+def test_a_missing_stamp_is_replaced_by_the_arrival_time(client, receiver):
     until_received(client, receiver, 0.0)
     message = JointState(name=['hinge'], position=[0.0])
     message.header.stamp = client.node.get_clock().now().to_msg()
@@ -159,7 +159,7 @@ def test_a_stamp_is_handed_on_and_a_missing_one_is_the_arrival(client, receiver)
     assert (stamp.sec, stamp.nanosec) >= (before.sec, before.nanosec)
 
 
-def test_what_cannot_be_read_is_not_counted_as_skipped_besides(client):
+def test_unreadable_states_do_not_count_as_skipped(client):
     receiver = Receiver(raw=True)
     try:
         until_received(client, receiver, 0.0)
@@ -184,9 +184,7 @@ def test_an_arm_that_rests_beyond_its_limit_does_not_fill_the_log(client, receiv
     assert sum('beyond the position limits' in text for text in receiver.warnings) == 1
 
 
-def test_two_publishers_share_a_queue_in_which_no_state_takes_the_place_of_another(
-    client, receiver
-):
+def test_two_publishers_share_a_queue_without_replacing_states(client, receiver):
     gripper = Client('gripper')
     rounds, heard = iter(range(10**6)), receiver.robot.buffer
 
@@ -229,7 +227,7 @@ def test_two_publishers_share_a_queue_in_which_no_state_takes_the_place_of_anoth
     assert len(receiver.received) == 1
 
 
-def test_a_depth_that_was_asked_for_is_left_alone(client):
+def test_a_depth_of_the_parameters_is_not_changed(client):
     receiver = Receiver(raw=False, depth=3)
     gripper = Client('gripper')
     try:

@@ -1,4 +1,4 @@
-"""The loop of the process: what it leaves behind when everything else has failed."""
+"""The main loop: efforts in force and exit code after failures and signals."""
 
 import time
 from types import SimpleNamespace
@@ -18,7 +18,7 @@ EFFORT = np.array([5.0])
 
 
 class Output:
-    """A command output that only notes what is sent."""
+    """A command output that records its commands."""
 
     def __init__(self, stop_ramp=0.2):
         settings = OutputSettings(100.0, 0.0, stop_ramp, 'ramp_to_zero')
@@ -73,6 +73,11 @@ class Executor:
     add_node = remove_node = lambda self, node: None
 
 
+def signaled(name='', count=0):
+    """Return signals of a process."""
+    return SimpleNamespace(name=name, count=count, call=lambda wake: None)
+
+
 def loop(fails, signals=None, **options):
     """Return a loop with an output that sends its whole effort, the output and the log."""
     output, log = Output(**options), []
@@ -84,14 +89,14 @@ def loop(fails, signals=None, **options):
         create_guard_condition=lambda _: SimpleNamespace(trigger=None),
         destroy_node=lambda: None,
     )
-    signals = signals or SimpleNamespace(name='', count=0, call=lambda wake: None)
+    signals = signals or signaled()
     return main._Loop(node, Executor(fails), signals), output, log
 
 
 @pytest.fixture(autouse=True)
 def quiet(monkeypatch):
-    monkeypatch.setattr(main, '_load_the_rest', lambda: None)
-    monkeypatch.setattr(main, '_spare_the_garbage_collector', lambda: None)
+    monkeypatch.setattr(main, '_load_scipy', lambda: None)
+    monkeypatch.setattr(main, '_freeze_startup_objects', lambda: None)
 
 
 def test_an_executor_that_keeps_failing_stops_the_output_and_ends_with_an_error():
@@ -106,8 +111,8 @@ def test_an_executor_that_keeps_failing_stops_the_output_and_ends_with_an_error(
     assert any('the executor keeps failing' in text for text in log)
 
 
-def test_an_error_now_and_then_does_not_end_it():
-    signals = SimpleNamespace(name='', count=0, call=lambda wake: None)
+def test_occasional_errors_do_not_end_the_process():
+    signals = signaled()
     unit, output, log = loop(lambda spun: spun % 2, signals)
 
     def fails(spun):
@@ -122,24 +127,22 @@ def test_an_error_now_and_then_does_not_end_it():
     assert not any('keeps failing' in text for text in log)
 
 
-def test_an_effort_that_is_left_is_no_success():
-    signals = SimpleNamespace(name='SIGTERM', count=1, call=lambda wake: None)
-    unit, output, log = loop(lambda spun: False, signals)
+def test_a_remaining_effort_is_reported_by_the_exit_code():
+    unit, output, log = loop(lambda spun: False, signaled('SIGTERM', 1))
     output.is_broken = True
     assert unit.run() == 1
     assert any('the last efforts may stay in force: a: ' in text for text in log)
 
 
-def test_efforts_that_a_lost_controller_holds_are_no_success():
-    signals = SimpleNamespace(name='SIGTERM', count=1, call=lambda wake: None)
-    unit, output, log = loop(lambda spun: False, signals)
+def test_efforts_of_a_lost_controller_are_reported_by_the_exit_code():
+    unit, output, log = loop(lambda spun: False, signaled('SIGTERM', 1))
     output.path.lose_controller(time.monotonic(), '/c is inactive')
     assert unit.run() == 1
     assert any('the last efforts may stay in force: a: 5' in text for text in log)
 
 
-def test_a_second_signal_hastens_the_stop():
-    signals = SimpleNamespace(name='SIGTERM', count=1, call=lambda wake: None)
+def test_a_second_signal_shortens_the_stop():
+    signals = signaled('SIGTERM', 1)
     unit, _, log = loop(lambda spun: False, signals, stop_ramp=60.0)
 
     def second(spun):

@@ -1,4 +1,4 @@
-"""What stops the output while efforts are sent, and that the search for it is itself watched."""
+"""Checks that stop the output while efforts are sent, and the supervision of these checks."""
 
 from types import SimpleNamespace
 
@@ -8,21 +8,21 @@ import pytest
 
 
 class Path:
-    """A torque path that notes what it is told."""
+    """A torque path that records its calls."""
 
     def __init__(self):
         self.is_driving = self.is_on = True
-        self.told, self.checks = [], 0
+        self.calls, self.checks = [], 0
         self.output = SimpleNamespace(limiter=SimpleNamespace(describe_last=lambda: 'a: -32'))
 
     def fault(self, now, reason):
-        self.told.append(('fault', reason))
+        self.calls.append(('fault', reason))
 
     def lose_controller(self, now, reason):
-        self.told.append(('lost', reason))
+        self.calls.append(('lost', reason))
 
     def restart_from_zero(self, now, reason):
-        self.told.append(('restart', reason))
+        self.calls.append(('restart', reason))
 
     def monitored(self, now):
         self.checks += 1
@@ -70,34 +70,34 @@ def parts():
     return parts
 
 
-def test_a_search_that_finds_nothing_is_told_to_the_torque_path(parts):
+def test_a_check_without_findings_is_reported_to_the_torque_path(parts):
     parts.unit.check()
-    assert parts.path.told == []
+    assert parts.path.calls == []
     assert parts.path.checks == 1
 
 
-def test_other_publishers_stop_it(parts):
+def test_other_publishers_stop_the_output(parts):
     parts.conflicts.append('1 other publisher')
     parts.unit.check()
-    assert parts.path.told == [('fault', '1 other publisher')]
+    assert parts.path.calls == [('fault', '1 other publisher')]
 
 
-def test_a_controller_that_answers_late_and_does_not_fit_stops_it(parts):
+def test_a_late_mismatch_of_a_controller_stops_the_output(parts):
     parts.refusals.append('another order')
     parts.unit.check()
-    assert parts.path.told == [('fault', 'another order')]
+    assert parts.path.calls == [('fault', 'another order')]
 
 
-def test_a_controller_that_is_deactivated_or_gone_ends_it(parts):
+def test_a_deactivated_or_lost_controller_ends_the_output(parts):
     parts.next_listeners = {'/controller': listener(['/controller is inactive'])}
     parts.unit.check()
-    assert parts.path.told == [('lost', '/controller is inactive')]
-    parts.path.told.clear()
+    assert parts.path.calls == [('lost', '/controller is inactive')]
+    parts.path.calls.clear()
     parts.next_listeners = {'/controller': listener()}
     parts.unit.check()
     parts.next_listeners = {}
     parts.unit.check()
-    assert parts.path.told[0] == ('lost', '/controller no longer listens to the commands')
+    assert parts.path.calls[0] == ('lost', '/controller no longer listens to the commands')
 
 
 @pytest.mark.parametrize('others', [{}, {'/controller': listener(['/controller is inactive'])}])
@@ -106,24 +106,24 @@ def test_a_second_controller_that_still_listens_gets_the_whole_stop(parts, other
     parts.unit.check()
     parts.next_listeners = {**others, '/second': listener()}
     parts.unit.check()
-    [(what, reason)] = parts.path.told
+    [(what, reason)] = parts.path.calls
     assert what == 'fault'
     assert reason.endswith('; its hardware may hold the last efforts: a: -32')
     parts.path.is_driving = False  # the stop is on its way: it goes on
     parts.unit.check()
-    assert len(parts.path.told) == 1
+    assert len(parts.path.calls) == 1
     parts.next_listeners = {}
     parts.unit.check()
-    what, reason = parts.path.told[-1]
+    what, reason = parts.path.calls[-1]
     assert what == 'lost' and '/second no longer listens to the commands' in reason
 
 
-def test_a_listener_that_is_no_controller_may_go(parts):
+def test_a_listener_that_is_no_controller_may_leave(parts):
     parts.next_listeners = {'/controller': listener(), '/plot': listener(is_controller=False)}
     parts.unit.check()
     parts.next_listeners = {'/controller': listener()}
     parts.unit.check()
-    assert parts.path.told == []
+    assert parts.path.calls == []
 
 
 def test_the_first_controller_that_begins_to_listen_gets_the_ramp(parts):
@@ -131,21 +131,21 @@ def test_the_first_controller_that_begins_to_listen_gets_the_ramp(parts):
     parts.unit.check()
     parts.next_listeners = {'/controller': listener()}
     parts.unit.check()
-    assert parts.path.told == [('restart', '/controller has begun to listen to the commands')]
+    assert parts.path.calls == [('restart', '/controller has begun to listen to the commands')]
     parts.next_listeners = {'/controller': listener(), '/plot': listener(is_controller=False)}
     parts.unit.check()
-    assert len(parts.path.told) == 1
+    assert len(parts.path.calls) == 1
 
 
-def test_a_controller_that_was_started_again_gets_the_ramp(parts):
+def test_a_restarted_controller_gets_the_ramp(parts):
     parts.unit.check()
-    assert parts.path.told == []
+    assert parts.path.calls == []
     parts.controllers.renewed = ['/controller']
     parts.unit.check()
-    assert parts.path.told == [('restart', '/controller has begun to listen to the commands')]
+    assert parts.path.calls == [('restart', '/controller has begun to listen to the commands')]
 
 
-def test_a_search_that_fails_is_no_search(parts):
+def test_a_check_that_raises_is_not_reported(parts):
     def fail():
         raise RuntimeError('no graph')
 
@@ -156,9 +156,9 @@ def test_a_search_that_fails_is_no_search(parts):
     assert len(parts.errors) == 1
 
 
-def test_while_it_is_off_only_the_controllers_are_followed(parts):
+def test_only_the_controllers_are_checked_while_the_output_is_off(parts):
     parts.path.is_driving = parts.path.is_on = False
     parts.conflicts.append('1 other publisher')
     parts.refusals.append('another order')
     parts.unit.check()
-    assert parts.path.told == []
+    assert parts.path.calls == []

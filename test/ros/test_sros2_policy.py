@@ -1,7 +1,8 @@
-"""The SROS2 policies in config permit exactly what the node and the markers program use."""
+"""The SROS2 policies in config permit exactly the names that node, markers and guard use."""
 
 from pathlib import Path
 import re
+import sys
 
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node.ros.parameters.table import PARAMETERS
@@ -13,10 +14,15 @@ from support.robots import PENDULUM
 from support.sros2_policy import POLICY, PolicyError, read
 from visualization_msgs.msg import MarkerArray
 
-DOCUMENT = Path(__file__).parents[2] / 'docs' / 'security.md'
+ROOT = Path(__file__).parents[2]
+DOCUMENT = ROOT / 'docs' / 'security.md'
 MARKERS_POLICY = POLICY.with_name('sros2_policy_markers.xml')
+GUARD_POLICY = POLICY.with_name('sros2_policy_effort_guard.xml')
 # Only used while the output is enabled, and with a controller on the command topic.
 ON_ENABLE = '/forward_effort_controller/get_parameters'
+sys.path.insert(0, str(ROOT / 'scripts'))
+
+from reference import graph as reference_graph  # noqa: E402
 
 
 def graph(client, namespace='/', name='dynamics_node'):
@@ -71,14 +77,21 @@ def test_the_node_in_another_namespace_uses_exactly_the_permitted_names(client, 
     check(client, allowed, f'/left{ON_ENABLE}', namespace='/left')
 
 
-def test_an_enabled_node_uses_no_other_names(client, start):
-    start()
+@pytest.fixture
+def commands(client):
+    """Return the commands that a controller receives."""
     controller = rclpy.create_node('forward_effort_controller', context=client.context)
     commands = []
     controller.create_subscription(
         Float64MultiArray, 'forward_effort_controller/commands', commands.append, 10
     )
     client.executor.add_node(controller)
+    yield commands
+    controller.destroy_node()
+
+
+def test_an_enabled_node_uses_no_other_names(client, start, commands):
+    start()
     allowed = read(POLICY.read_text()).allowed
     forbidden = []
 
@@ -93,7 +106,6 @@ def test_an_enabled_node_uses_no_other_names(client, start):
     assert client.ask(GetDynamics, state).success
     assert not any(forbidden), max(forbidden, key=len)
     check(client, allowed, ON_ENABLE, '/clock')
-    controller.destroy_node()
 
 
 @pytest.mark.parametrize('namespace', ['/', '/left'])
@@ -109,6 +121,33 @@ def test_the_document_links_the_policy_of_the_markers_program():
     assert (profile.enclave, profile.node) == ('/markers', 'markers')
     text = DOCUMENT.read_text()
     assert '(../config/sros2_policy_markers.xml), for an enclave `/markers`' in text
+
+
+def test_the_guard_uses_exactly_the_permitted_names(client, start, commands):
+    start(module='dynamics_node.ros.effort_guard.main')
+    check(client, read(GUARD_POLICY.read_text()).allowed, name='effort_guard')
+
+
+def test_the_reference_names_what_the_policy_of_the_guard_permits():
+    allowed = read(GUARD_POLICY.read_text()).allowed
+    names = [entry.name for entry in reference_graph.EFFORT_GUARD]
+    assert {
+        name.replace('~', '/effort_guard') if name[0] in '~/' else f'/{name}' for name in names
+    } == {
+        name
+        for permission in ('publish', 'subscribe', 'reply')
+        for name in allowed[permission]
+        if name not in reference_graph.OF_EVERY_NODE
+        and 'parameter' not in name
+        and 'type_description' not in name
+    }
+
+
+def test_the_command_topic_in_the_document_is_the_input_of_the_guard():
+    assert read(GUARD_POLICY.read_text()).allowed['subscribe'] == {'/effort_guard/commands'}
+    text = (ROOT / 'docs' / 'effort_guard.md').read_text()
+    assert '-p command_topic:=/effort_guard/commands' in text
+    assert GUARD_POLICY.name in text
 
 
 def test_the_policy_fits_the_default_parameters():

@@ -1,37 +1,42 @@
-"""Listeners are noticed within a twentieth of a second, over DDS."""
+"""Throttles, rates, and cached subscriber counts, over DDS."""
 
 import time
 
-from dynamics_node.ros.support.throttling import ASK_EVERY, HasSubscribers, Rate, Throttle
+from dynamics_node.ros.support.throttling import (
+    HasSubscribers,
+    Rate,
+    SUBSCRIBER_COUNT_AGE,
+    Throttle,
+)
 from std_msgs.msg import String
 
 
-def test_a_listener_is_noticed_soon_after_it_was_matched_and_soon_after_it_left(client):
-    publisher = client.node.create_publisher(String, 'listened', 1)
-    listened = HasSubscribers(publisher)
-    assert not listened
-    subscription = client.node.create_subscription(String, 'listened', lambda _: None, 1)
+def test_a_new_and_a_lost_subscriber_are_noticed_within_the_age_of_the_cache(client):
+    publisher = client.node.create_publisher(String, 'topic', 1)
+    has_subscribers = HasSubscribers(publisher)
+    assert not has_subscribers
+    subscription = client.node.create_subscription(String, 'topic', lambda _: None, 1)
     client.until(publisher.get_subscription_count)
-    time.sleep(ASK_EVERY)
-    assert listened
+    time.sleep(SUBSCRIBER_COUNT_AGE)
+    assert has_subscribers
     client.node.destroy_subscription(subscription)
     client.until(lambda: not publisher.get_subscription_count())
-    time.sleep(ASK_EVERY)
-    assert not listened
+    time.sleep(SUBSCRIBER_COUNT_AGE)
+    assert not has_subscribers
 
 
-def test_the_middleware_is_not_asked_for_every_message():
+def test_the_count_is_not_queried_for_every_message():
     class Publisher:
-        asked = 0
+        queries = 0
 
         def get_subscription_count(self):
-            self.asked += 1
+            self.queries += 1
             return 1
 
     publisher = Publisher()
-    listened = HasSubscribers(publisher, period=3600.0)
-    assert all(bool(listened) for _ in range(100))
-    assert publisher.asked == 1
+    has_subscribers = HasSubscribers(publisher, period=3600.0)
+    assert all(bool(has_subscribers) for _ in range(100))
+    assert publisher.queries == 1
 
 
 def test_the_rate_is_that_between_the_last_two_readings():
@@ -44,7 +49,7 @@ def test_the_rate_is_that_between_the_last_two_readings():
     assert rate.value == 0.0
 
 
-def test_a_counter_that_begins_anew_is_no_negative_rate():
+def test_a_counter_that_is_reset_is_no_negative_rate():
     rate = Rate()
     rate.measure(10.0, 100)
     rate.measure(11.0, 7)

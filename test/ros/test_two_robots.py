@@ -83,7 +83,7 @@ def arms(client):
             arm.close()
 
 
-def test_enabling_one_leaves_the_other_alone(client, arms):
+def test_enabling_one_robot_does_not_affect_the_other(client, arms):
     left, right = arms
     assert left.torques[-1].name == right.torques[-1].name  # the same names in both
     for arm in arms:
@@ -107,7 +107,7 @@ def test_enabling_one_leaves_the_other_alone(client, arms):
     assert {output.name for output in right.outputs} == {'READY'}
 
 
-def test_states_of_one_never_reach_the_other(client, arms):
+def test_states_of_one_robot_never_reach_the_other(client, arms):
     left, right = arms
     for arm in arms:
         for topic in ('joint_states', 'forward_effort_controller/commands', 'robot_description'):
@@ -131,7 +131,7 @@ def test_states_of_one_never_reach_the_other(client, arms):
     assert list(right.torques[-1].effort) == pytest.approx(right_torque, abs=1e-9)
 
 
-def test_the_document_says_what_is_tested_here():
+def test_the_document_describes_the_tested_commands():
     said = re.findall(r'`/(left|right)/([a-z_/]+)`', DOCUMENT)
     assert {side for side, _ in said} == set(SIDES)
     names = {name for _, name in said}

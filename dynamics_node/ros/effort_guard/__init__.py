@@ -1,8 +1,8 @@
 """
-The effort guard: a process between the dynamics node and the effort controller.
+The effort guard's process: between the dynamics node and the effort controller.
 
-What may change here: topics, parameters, log and diagnostics. Passing and fading are decided in
-`safety.effort_guard`. Nothing here may import the library's dynamics, numba or yourdfpy: the
-guard must start at once, stay small and run when the node does not.
+What may change here: topics, parameters, messages. `safety.effort_guard` decides which commands
+pass and which fade. Nothing here may import the dynamics of the library, numba or yourdfpy: the
+guard has to start at once, stay small, and run independently of the node.
 
 """

@@ -1,6 +1,9 @@
-"""The controller's `joints` and `interface_name`, offered as the guard's own parameters."""
+"""The parameters `joints` and `interface_name` of the controller, mirrored by the guard."""
+
+from __future__ import annotations
 
 import time
+from typing import Any, TYPE_CHECKING
 
 from rcl_interfaces.msg import ParameterDescriptor, ParameterType, SetParametersResult
 from rcl_interfaces.srv import GetParameters
@@ -8,34 +11,37 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 
 from ..support.callback_errors import logged
 
-_KINDS = {
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+_TYPES = {
     'joints': ParameterType.PARAMETER_STRING_ARRAY,
     'interface_name': ParameterType.PARAMETER_STRING,
 }
-# A request without an answer counts as lost after this time, s.
+# Time after which a request counts as lost, s.
 LOST_AFTER = 2.0
 
 
 class ControllerParameters:
     """
-    Asks the listeners of the output topic for joints and interface, and repeats their answers.
+    Requests joints and interface from the listeners of the output topic, and mirrors the answers.
 
-    The dynamics node asks the listeners of its command topic for both before it is enabled. With
-    the guard in between it asks the guard, which must answer for the controller. As long as
-    nothing is known, or where a listener has no such parameters, the guard has none either, and
-    the node trusts it as it trusts such a listener. Listeners that contradict each other are
-    repeated as such, so that the node refuses and shows both.
+    The dynamics node requests both from the listeners of its command topic before it is enabled.
+    With the guard in between it asks the guard, which must answer for the controller. While the
+    listeners have not answered, or if they have no such parameters, the guard has none either, and
+    the node trusts it like any listener without them. Contradictory answers are mirrored together,
+    so that the node refuses and shows both.
 
     Attributes
     ----------
     joint_count : int or None
-        How many joints the controllers drive; None while unknown or contradictory.
+        Number of joints that the controllers drive; None while unknown or contradictory.
 
     """
 
-    def __init__(self, node, topic):
+    def __init__(self, node: Node, topic: str) -> None:
         """
-        Start without any request.
+        Start without requests; `ask` sends them.
 
         Parameters
         ----------
@@ -45,7 +51,7 @@ class ControllerParameters:
 
         """
         self.logger = node.get_logger()
-        self.joint_count = None
+        self.joint_count: int | None = None
         self._node = node
         self._topic = topic
         self._listeners: dict[str, _Listener] = {}
@@ -53,8 +59,8 @@ class ControllerParameters:
         node.add_on_set_parameters_callback(self._check)
 
     @logged
-    def ask(self):
-        """Take over the answers, and ask again; called once a second."""
+    def ask(self) -> None:
+        """Mirror the answers, and send the requests again; to be called periodically."""
         names = self._names()
         for name in set(self._listeners) - names:
             self._listeners.pop(name).close()
@@ -62,9 +68,9 @@ class ControllerParameters:
             self._listeners[name] = _Listener(self._node, name)
         for listener in self._listeners.values():
             listener.ask()
-        self._take_over()
+        self._mirror_answers()
 
-    def _names(self):
+    def _names(self) -> set[str]:
         own = self._node.get_fully_qualified_name()
         return {
             f'{info.node_namespace.rstrip("/")}/{info.node_name}'
@@ -73,7 +79,7 @@ class ControllerParameters:
             if info.node_name and not info.node_name.startswith('_')
         } - {own}
 
-    def _take_over(self):
+    def _mirror_answers(self) -> None:
         known = {name: listener.values for name, listener in sorted(self._listeners.items())}
         joints = {name: values['joints'] for name, values in known.items() if 'joints' in values}
         interfaces = {
@@ -87,12 +93,12 @@ class ControllerParameters:
             if len(different) == 1
             else [f'{name}: {" ".join(names)}' for name, names in joints.items()] or None,
         )
-        # The listener that refuses efforts, if there is one.
+        # An interface other than effort, if there is one, so that the node refuses it.
         self._declare(
             'interface_name', min(interfaces, key=lambda name: name == 'effort', default=None)
         )
 
-    def _declare(self, name, value):
+    def _declare(self, name: str, value: Any) -> None:
         is_declared = self._node.has_parameter(name)
         if is_declared and self._node.get_parameter(name).value == value:
             return
@@ -117,8 +123,8 @@ class ControllerParameters:
         finally:
             self._is_own_change = False
 
-    def _check(self, parameters):
-        mirrored = [item.name for item in parameters if item.name in _KINDS]
+    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
+        mirrored = [item.name for item in parameters if item.name in _TYPES]
         if mirrored and not self._is_own_change:
             return SetParametersResult(
                 successful=False,
@@ -128,21 +134,21 @@ class ControllerParameters:
 
 
 class _Listener:
-    """The open request to one listener, and its last answer."""
+    """Requests to one listener, and its last answers."""
 
-    def __init__(self, node, name):
-        self.values = {}
+    def __init__(self, node: Node, name: str) -> None:
+        self.values: dict[str, Any] = {}
         self._node = node
-        self._futures = {}
+        self._futures: dict[str, Any] = {}
         self._asked_at = 0.0
         try:
-            self._client = node.create_client(GetParameters, f'{name}/get_parameters')
+            self._client: Any = node.create_client(GetParameters, f'{name}/get_parameters')
         except Exception as error:  # DDS security may forbid it
             self._client = None
             node.get_logger().warning(f'{name} cannot be asked for its joints: {error}')
 
-    def ask(self):
-        """Take the answers that have come, and ask again."""
+    def ask(self) -> None:
+        """Read the answers that have arrived, and send the requests again."""
         if self._futures and all(future.done() for future in self._futures.values()):
             self.values = {
                 name: value
@@ -151,29 +157,29 @@ class _Listener:
             }
             self._futures = {}
         if self._futures and time.monotonic() - self._asked_at > LOST_AFTER:
-            self._forget()
+            self._discard_requests()
         if not self._futures and self._client is not None and self._client.service_is_ready():
             self._asked_at = time.monotonic()
-            # One at a time: rclcpp answers nothing at all if one of several does not exist.
+            # One request per parameter: rclcpp returns no value if one of several is missing.
             self._futures = {
                 name: self._client.call_async(GetParameters.Request(names=[name]))
-                for name in _KINDS
+                for name in _TYPES
             }
 
-    def _forget(self):
+    def _discard_requests(self) -> None:
         for future in self._futures.values():
             self._client.remove_pending_request(future)
         self._futures = {}
 
-    def close(self):
+    def close(self) -> None:
         """Destroy the client."""
         if self._client is not None:
-            self._forget()
+            self._discard_requests()
             self._node.destroy_client(self._client)
 
 
-def _value(name, future):
+def _value(name: str, future: Any) -> Any:
     response = None if future.exception() else future.result()
-    if response is None or not response.values or response.values[0].type != _KINDS[name]:
+    if response is None or not response.values or response.values[0].type != _TYPES[name]:
         return None
     return parameter_value_to_python(response.values[0])

@@ -1,23 +1,32 @@
 """The executable `effort_guard`: start, spin, and leave no effort behind."""
 
+from __future__ import annotations
+
 import gc
 import os
 import sys
 import time
 import traceback
+from typing import TYPE_CHECKING
 
 from ..support.process import Signals, UnblockedOutput
 
-# Time that the fade may take after a signal, and after a second one, s; launch kills after 5.
+if TYPE_CHECKING:
+    from rclpy.executors import Executor
+
+    from .node import EffortGuardNode
+
+# Longest duration of the fade after the first signal, s; launch kills after 5 s.
 STOP_WITHIN = 2.5
+# Longest duration of the fade after the second signal, s.
 HURRY_WITHIN = 0.3
-# After this time the remaining effort goes to zero at once, s.
+# Time after the first signal at which a remaining effort is set to zero at once, s.
 GIVE_UP_AFTER = 3.0
-# For the controller to acknowledge the last command, s.
+# Time for the controller to acknowledge the last command, s.
 ACKNOWLEDGE_WITHIN = 0.5
 
 
-def main(args=None):
+def main(args: list[str] | None = None) -> int:
     """
     Run the guard until a signal.
 
@@ -29,8 +38,8 @@ def main(args=None):
     Returns
     -------
     int
-        Exit code: 0 after a signal, when no effort is left; 1 if one may be, or if the guard
-        could not start.
+        Exit code: 0 after a signal without an effort in force; 1 if one may be in force, or if the
+        guard could not start.
 
     """
     signals = Signals()
@@ -44,7 +53,7 @@ def main(args=None):
             output.close()
 
 
-def _run(args, signals):
+def _run(args: list[str] | None, signals: Signals) -> int:
     import rclpy
     import rclpy.logging
     from rclpy.signals import SignalHandlerOptions
@@ -65,14 +74,14 @@ def _run(args, signals):
         rclpy.try_shutdown()
 
 
-def _spin(node, signals):
+def _spin(node: EffortGuardNode, signals: Signals) -> int:
     from rclpy.executors import SingleThreadedExecutor
 
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     signals.call(node.create_guard_condition(lambda: None).trigger)
     gc.collect()
-    gc.freeze()  # objects of the start live as long as the process: not collected again
+    gc.freeze()  # objects of the start-up stay, and are excluded from later collections
     while not signals.count:
         _spin_once(node, executor)
     is_left = not _bring_to_rest(node, executor, signals)
@@ -81,17 +90,17 @@ def _spin(node, signals):
     return int(is_left)
 
 
-def _spin_once(node, executor):
+def _spin_once(node: EffortGuardNode, executor: Executor) -> None:
     try:
         executor.spin_once()
     except Exception as error:
-        # Our callbacks raise nothing, but rclpy has some of its own.
+        # Not from the callbacks of the node, which are guarded, but from those of rclpy.
         node.logger.error(f'error in rclpy: {error}\n{traceback.format_exc()}')
         time.sleep(0.01)  # a repeated error must not take the processor from the timer
 
 
-def _bring_to_rest(node, executor, signals):
-    # True if no effort is left.
+def _bring_to_rest(node: EffortGuardNode, executor: Executor, signals: Signals) -> bool:
+    # Returns whether no effort is in force.
     guard = node.guard
     if not guard.has_effort:
         return True

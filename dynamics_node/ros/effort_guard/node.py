@@ -1,8 +1,12 @@
 """`EffortGuardNode`: commands in, the same commands out, or a fade to zero."""
 
+from __future__ import annotations
+
 from array import array
+from collections.abc import Sequence
 import math
 import time
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from dynamics_interfaces.msg import OutputState as OutputStateMessage
@@ -20,17 +24,20 @@ from ..support.callback_errors import logged
 from ..support.qos import COMMAND, NO_EVENTS, OUTPUT_STATE, RESULT
 from ..support.throttling import Throttle
 from ...errors import ParameterError
+from ...safety import OutputState
 from ...safety.effort_guard import EffortGuard, GuardSettings, MAX_TICK, PERIODS
 
-# Period of the checks of publishers and subscribers, s.
+# Period of the search for publishers and listeners, s.
 GRAPH_EVERY = 0.5
-# Period at which a lasting warning is repeated, s.
+# Period of a repeated warning, s.
 WARN_EVERY = 10.0
+# Shortest time between two log messages of the same state, s.
+LOG_STATE_EVERY = 1.0
 
 
 class EffortGuardNode(Node):
     """
-    Passes commands to the effort controller, and fades them to zero when no more come.
+    Passes commands to the effort controller, and fades the last one to zero when they end.
 
     Attributes
     ----------
@@ -38,9 +45,9 @@ class EffortGuardNode(Node):
 
     """
 
-    def __init__(self, **options):
+    def __init__(self, **options: Any) -> None:
         """
-        Create everything; nothing is published on the output topic before a command comes.
+        Create all parts; the output topic is silent until a command arrives.
 
         Parameters
         ----------
@@ -70,10 +77,11 @@ class EffortGuardNode(Node):
                 'guard would hear itself; expected two topics'
             )
         self.guard = EffortGuard(self._settings, self._changed, self._obstacle)
-        self._changes: list = []
+        self._changes: list[tuple[OutputState, str]] = []
         self._remarks: list[str] = []
         self._layout = Float64MultiArray().layout
-        self._warned, self._logged = Throttle(WARN_EVERY), {}
+        self._warned = Throttle(WARN_EVERY)
+        self._logged: dict[Any, Throttle] = {}
         self._refused_before = 0
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._publisher = self.create_publisher(
@@ -86,7 +94,7 @@ class EffortGuardNode(Node):
             DiagnosticArray, '/diagnostics', RESULT, event_callbacks=NO_EVENTS
         )
         self._controller = ControllerParameters(self, self._output)
-        # On the steady clock: it must watch while simulation time stands still.
+        # On the steady clock, which also runs while simulation time stands still.
         self._look_timer = self.create_timer(MAX_TICK, self._look, clock=steady)
         self.create_timer(GRAPH_EVERY, self._look_at_graph, clock=steady)
         self.create_timer(1.0, self._every_second, clock=steady)
@@ -98,22 +106,22 @@ class EffortGuardNode(Node):
             f'stop_ramp {self._settings.stop_ramp:g} s'
         )
 
-    def end(self, within, reason):
-        """Take no more commands, and fade to zero; see `EffortGuard.end`."""
+    def end(self, within: float, reason: str) -> None:
+        """Accept no more commands, and fade to zero; see `EffortGuard.end`."""
         self.guard.end(time.monotonic(), within, reason)
-        self._tell()
+        self._report_changes()
 
-    def drop(self):
+    def drop(self) -> None:
         """Publish zero at once."""
         self._publish(self.guard.drop())
-        self._tell()
+        self._report_changes()
 
-    def flush(self, timeout):
-        """Wait until the controller has the last command; return whether it has."""
+    def flush(self, timeout: float) -> bool:
+        """Wait up to `timeout` s for the controller to acknowledge; return whether it has."""
         return self._publisher.wait_for_all_acked(Duration(seconds=timeout))
 
-    def _subscribe(self):
-        def subscribe(**events):
+    def _subscribe(self) -> Any:
+        def subscribe(**events: Any) -> Any:
             return self.create_subscription(
                 Float64MultiArray,
                 self._input,
@@ -124,7 +132,7 @@ class EffortGuardNode(Node):
 
         try:
             return subscribe(matched=self._matched)
-        except UnsupportedEventTypeError:  # of another middleware
+        except UnsupportedEventTypeError:  # some middlewares have no such event
             self.guard.source_appeared(time.monotonic())
             return subscribe()
 
@@ -142,7 +150,7 @@ class EffortGuardNode(Node):
             self._publisher.publish(message)
             self._layout = message.layout
         if self._changes:
-            self._tell()
+            self._report_changes()
 
     @logged
     def _look(self):
@@ -151,30 +159,30 @@ class EffortGuardNode(Node):
             if output is not None:
                 self._publish(output)
         finally:
-            self._look_again()
-        self._tell()
+            self._schedule_look()
+        self._report_changes()
 
-    def _publish(self, output):
+    def _publish(self, output: Sequence[float]) -> None:
         self._publisher.publish(Float64MultiArray(layout=self._layout, data=array('d', output)))
 
-    def _look_again(self):
+    def _schedule_look(self) -> None:
         self._look_timer.timer_period_ns = math.ceil(
             self.guard.next_tick_in(time.monotonic()) * 1e9
         )
         self._look_timer.reset()
 
-    def _changed(self, state, reason):
-        # Logged after the command has been published, which nothing may delay.
+    def _changed(self, state: OutputState, reason: str) -> None:
+        # Reported after the command has been published, which must not be delayed.
         self._changes.append((state, reason))
 
-    def _tell(self):
+    def _report_changes(self) -> None:
         changes, self._changes = self._changes, []
         if not changes:
             return
-        self._look_again()
+        self._schedule_look()
         for state, reason in changes:
             self._publish_state(state, reason)
-            if not self._logged.setdefault(state, Throttle(1.0)).is_due():
+            if not self._logged.setdefault(state, Throttle(LOG_STATE_EVERY)).is_due():
                 continue
             # Three lines, because rclpy ties the severity to the line that logs.
             if state.name == 'FAULT':
@@ -184,7 +192,7 @@ class EffortGuardNode(Node):
             else:
                 self.logger.info(f'{state.name}: {reason}')
 
-    def _publish_state(self, state=None, reason=None):
+    def _publish_state(self, state: OutputState | None = None, reason: str | None = None) -> None:
         state = self.guard.state if state is None else state
         reason = '; but '.join([reason or self.guard.reason, *self._remarks])
         message = OutputStateMessage(state=int(state), name=state.name, reason=reason)
@@ -193,26 +201,26 @@ class EffortGuardNode(Node):
 
     # The graph -------------------------------------------------------------------------------
 
-    def _obstacle(self):
-        """Return why an effort must not begin now; '' if it may."""
+    def _obstacle(self) -> str:
+        """Return the reason against an effort that begins now, '' if there is none."""
         if self._publisher.get_subscription_count() == 0:
             return (
                 f'nothing listens on {self._output}: start the effort controller, or set '
                 'output_topic to its topic'
             )
-        return self._rival()
+        return self._other_publishers()
 
-    def _rival(self):
+    def _other_publishers(self) -> str:
         others = self.count_publishers(self._output) - 1
         if others <= 0:
             return ''
         return (
             f'{others} other publisher(s) on {self._output}'
-            f'{self._names(self._output)}: two sources of effort would fight; what is to be '
-            f'guarded has to send to {self._input}'
+            f'{self._names(self._output)}: two sources of effort would fight; the '
+            f'guarded one must publish on {self._input}'
         )
 
-    def _names(self, topic):
+    def _names(self, topic: str) -> str:
         own = (self.get_name(), self.get_namespace())
         names = {
             f'{info.node_namespace.rstrip("/")}/{info.node_name}'
@@ -233,8 +241,8 @@ class EffortGuardNode(Node):
         if remarks and self._warned.is_due():
             self.logger.warning('; '.join(remarks))
 
-    def _find_remarks(self):
-        remarks = [self._rival()]
+    def _find_remarks(self) -> list[str]:
+        remarks = [self._other_publishers()]
         sources = self.count_publishers(self._input)
         if sources > 1:
             remarks.append(
@@ -244,7 +252,7 @@ class EffortGuardNode(Node):
         if self.guard.has_effort and not self._publisher.get_subscription_count():
             remarks.append(f'nothing listens on {self._output} any more')
         if self.guard.slow_period() is not None:
-            # Without the changing number.
+            # Without the measured period: a changing text would be published at every search.
             remarks.append(
                 f'commands come too slowly: fewer than {PERIODS} within the timeout of '
                 f'{self._settings.timeout:g} s; raise timeout, or the rate of the '
@@ -268,7 +276,7 @@ class EffortGuardNode(Node):
         self._refused_before = refused
         self._diagnostics.publish(self._health())
 
-    def _health(self):
+    def _health(self) -> DiagnosticArray:
         guard, period = self.guard, self.guard.slow_period()
         level = {'FAULT': DiagnosticStatus.ERROR, 'STOPPING': DiagnosticStatus.WARN}.get(
             guard.state.name, DiagnosticStatus.WARN if self._remarks else DiagnosticStatus.OK
@@ -299,10 +307,10 @@ class EffortGuardNode(Node):
         message.header.stamp = self.get_clock().now().to_msg()
         return message
 
-    def _reset(self, request, response):
+    def _reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         try:
             response.success, response.message = self.guard.reset(time.monotonic())
-            self._tell()
+            self._report_changes()
         except Exception as error:
             self.logger.error(f'~/reset: {error}')
             response.success, response.message = False, f'internal error: {error}'

@@ -1,4 +1,6 @@
-"""Every parameter of the effort guard; docs/reference.md follows from this table."""
+"""The parameters of the effort guard, from which docs/reference.md is generated."""
+
+from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
@@ -67,17 +69,17 @@ GUARD_PARAMETERS = (
 
 def check_all(given: Mapping[str, Any]) -> dict[str, Any]:
     """
-    Check the value of every parameter, and the conditions between them.
+    Check all parameters, alone and together.
 
     Parameters
     ----------
     given : mapping of str to Any
-        Name → value from ROS; a missing name gets its default.
+        Name → value as ROS delivers it; missing names have their defaults.
 
     Returns
     -------
     dict of str to Any
-        Name → value of its kind, for all parameters.
+        Name → value of every parameter, in its Python type.
 
     Raises
     ------

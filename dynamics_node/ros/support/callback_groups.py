@@ -1,39 +1,45 @@
-"""Callback groups: the torque path always runs, services only in short windows beside it."""
+"""Callback groups: the torque path always runs; services run in short windows beside it."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 import time
+from typing import Any
 
 from rclpy.callback_groups import CallbackGroup, ReentrantCallbackGroup
 
-# While efforts are sent, services run in windows of this period, s.
+# Period of the service windows while efforts are sent, s.
 EVERY = 0.1
-# Length of a window, s.
+# Duration of a service window, s.
 WINDOW = 0.001
-# Length of a window after a request, s.
+# Duration for which services stay open after a request, s.
 BURST = 0.25
 
 
 class TorqueGroup(ReentrantCallbackGroup):
     """
-    Callbacks that may always run, one after another in the single thread of the executor.
+    Callbacks that may run at any time, one after another in the single executor thread.
 
-    rclpy's default group takes a lock for every entity in every wait.
+    rclpy's default group takes a lock for every entity in every wait; this one does not.
 
     """
 
 
 class ServiceGroup(CallbackGroup):
     """
-    Leaves services out of most waits while efforts are sent.
+    Excludes services from most waits while efforts are sent.
 
     rclpy prepares every wait anew, entity by entity, and waits twice for every joint state: a
-    dozen rarely called services cost more than the torque. While the output is on,
-    a request waits up to EVERY longer; those that follow it do not.
+    dozen idle services cost more than the torque. While the output is on, a request waits up to
+    EVERY longer; requests that follow within BURST do not.
 
     """
 
-    def __init__(self, is_driving, clock=time.monotonic):
+    def __init__(
+        self, is_driving: Callable[[], bool], clock: Callable[[], float] = time.monotonic
+    ) -> None:
         """
-        Make a group for services.
+        Create the group, open.
 
         Parameters
         ----------
@@ -48,9 +54,9 @@ class ServiceGroup(CallbackGroup):
         self._clock = clock
         self._open_until = self._closed_until = 0.0
 
-    def can_execute(self, entity):
-        """Return whether services are waited for now."""
-        # Called for every service in every wait: the usual case comes first.
+    def can_execute(self, entity: Any) -> bool:
+        """Return whether the executor includes a service in its wait now."""
+        # Called for every service in every wait: the most frequent answers come first.
         now = self._clock()
         if now < self._open_until:
             return True
@@ -60,10 +66,10 @@ class ServiceGroup(CallbackGroup):
             self._open_until, self._closed_until = now + WINDOW, now + EVERY
         return True
 
-    def beginning_execution(self, entity):
-        """Open a longer window: more requests may follow."""
+    def beginning_execution(self, entity: Any) -> bool:
+        """Stay open for BURST: other requests may follow this one."""
         self._open_until = self._clock() + BURST
         return True
 
-    def ending_execution(self, entity):
-        """Nothing to release: one thread runs one callback at a time."""
+    def ending_execution(self, entity: Any) -> None:
+        """Do nothing: one thread runs one callback at a time."""

@@ -1,5 +1,7 @@
 """Options of the process, as opposed to parameters of the node."""
 
+from __future__ import annotations
+
 import argparse
 
 from rclpy.utilities import remove_ros_args
@@ -7,14 +9,14 @@ from rclpy.utilities import remove_ros_args
 from .executor import EXECUTORS
 
 
-def parse(arguments):
+def parse(arguments: list[str]) -> argparse.Namespace:
     """
     Read the command line.
 
     Parameters
     ----------
     arguments : list of str
-        Program first; what belongs to ROS or is unknown is passed over.
+        Program first; ROS arguments and unknown ones are ignored.
 
     Returns
     -------
@@ -25,9 +27,9 @@ def parse(arguments):
     return parser().parse_known_args(remove_ros_args(arguments)[1:])[0]
 
 
-def parser():
+def parser() -> argparse.ArgumentParser:
     """
-    Return the argument parser, for the process and for docs/reference.md.
+    Return the parser of the options, for the process and for docs/reference.md.
 
     Returns
     -------

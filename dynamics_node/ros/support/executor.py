@@ -1,29 +1,33 @@
-"""Which of rclpy's executors runs the node's callbacks."""
+"""The executor of rclpy that runs the callbacks of the node."""
+
+from __future__ import annotations
 
 import time
+from typing import Any
 
 from rclpy.callback_groups import ReentrantCallbackGroup
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.task import Future
 from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
 
 EXECUTORS = ('rclpy', 'events')
-# Self-test of an executor: longest duration, duration of an idle wait, s, and the part of the idle
-# wait that may be spent computing.
+# Longest duration of the self-test of an executor, s.
 TEST_WITHIN = 5.0
+# Duration of the wait without events in the self-test, s.
 IDLE = 0.2
+# Largest share of processor time in that wait.
 BUSY_SHARE = 0.5
 
 
 class UnsoundExecutorError(RuntimeError):
-    """The chosen executor fails its self-test on this computer."""
+    """The chosen executor does not work on this computer as the node needs it."""
 
 
-def make_executor(choice):
+def make_executor(choice: str) -> Executor:
     """
-    Make an executor of rclpy.
+    Return an executor of rclpy.
 
     Parameters
     ----------
@@ -37,7 +41,7 @@ def make_executor(choice):
     Raises
     ------
     UnsoundExecutorError
-        If the events executor is not there or fails its self-test.
+        If rclpy has no events executor, or its self-test fails.
 
     """
     if choice == 'rclpy':
@@ -57,8 +61,8 @@ def make_executor(choice):
 
 
 def _self_test(kind):
-    # Returns the failed parts, '' if there are none: a timer, a message, a deferred service
-    # response, and an idle wait.
+    # Returns the first problem, '' if there is none. Tests a timer, a message, a service that
+    # answers late, and a wait without load.
     executor = kind()
     probe = _Probe()
     try:
@@ -75,7 +79,7 @@ def _self_test(kind):
         while time.monotonic() - begin < IDLE:
             executor.spin_once(timeout_sec=IDLE)
         if time.process_time() - computing > BUSY_SHARE * IDLE:
-            return 'it computes while nothing happens'
+            return 'it uses the processor while it waits'
     except Exception as error:
         return f'{type(error).__name__}: {error}'
     finally:
@@ -85,9 +89,9 @@ def _self_test(kind):
 
 
 class _Probe(Node):
-    """A node with the kinds of callbacks that the dynamics node has."""
+    """A node of its own name with a timer, a topic and a service, as the node has them."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__(
             '_dynamics_node_executor_test',
             use_global_arguments=False,
@@ -96,28 +100,28 @@ class _Probe(Node):
         self._done = {'timer': False, 'message': False, 'late answer': False}
         self._timer = self.create_timer(0.01, self._ticked)
         self._publisher = self.create_publisher(Empty, '~/probe', 1)
-        self.create_subscription(Empty, '~/probe', self._heard, 1)
+        self.create_subscription(Empty, '~/probe', self._received, 1)
         self.create_service(
             Trigger, '~/late', self._answer, callback_group=ReentrantCallbackGroup()
         )
         self._client = self.create_client(Trigger, '~/late')
-        self._call = None
-        self._late = Future()
+        self._call: Any = None
+        self._late: Future = Future()
 
-    def missing(self):
-        """Return the parts that have not worked yet, a list of str."""
+    def missing(self) -> list[str]:
+        """Return the names of the parts that have not worked yet."""
         if self._call is not None and self._call.done():
             self._done['late answer'] = True
         return [name for name, is_done in self._done.items() if not is_done]
 
-    def go_on(self):
-        """Publish and call as soon as the partners are discovered."""
+    def go_on(self) -> None:
+        """Publish a message, and call the service as soon as it is ready."""
         self._publisher.publish(Empty())
         if self._call is None and self._client.service_is_ready():
             self._call = self._client.call_async(Trigger.Request())
 
-    def rest(self):
-        """Stop the timer."""
+    def rest(self) -> None:
+        """Stop the timer, so that no event remains."""
         self._timer.cancel()
 
     def _ticked(self):
@@ -125,7 +129,7 @@ class _Probe(Node):
         if self._call is not None and not self._late.done():
             self._late.set_result(True)
 
-    def _heard(self, _):
+    def _received(self, _):
         self._done['message'] = True
 
     async def _answer(self, request, response):

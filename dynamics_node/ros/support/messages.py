@@ -1,17 +1,21 @@
-"""Fast conversion between message fields and numpy arrays, and names of message types."""
+"""Fast conversion between messages and numpy, and names of message types."""
+
+from __future__ import annotations
 
 from array import array
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 
-def to_field(values):
+def to_field(values: ArrayLike) -> array:
     """
-    Return an array in the type that a float64[] field accepts fastest.
+    Return numbers in the type that a float64[] field accepts fastest.
 
     Parameters
     ----------
-    values : numpy.ndarray
+    values : array_like
         Any shape; flattened row-major.
 
     Returns
@@ -22,9 +26,9 @@ def to_field(values):
     return array('d', np.asarray(values, dtype=float).tobytes())
 
 
-def from_field(field):
+def from_field(field: ArrayLike) -> NDArray[np.float64]:
     """
-    Return a float64[] field as an array of its own.
+    Return a copy of a float64[] field.
 
     Parameters
     ----------
@@ -38,6 +42,6 @@ def from_field(field):
     return np.array(field, dtype=float)
 
 
-def type_name(kind):
-    """Return the name of a message type as ROS writes it, 'sensor_msgs/msg/JointState'."""
+def type_name(kind: Any) -> str:
+    """Return the ROS name of a message type, for example 'sensor_msgs/msg/JointState'."""
     return f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'

@@ -1,28 +1,35 @@
-"""Periodic tasks without timers: throttled logging, measured rates, cached subscriber counts."""
+"""Rate limiting: of log messages, of graph queries, and the measured rate of a counter."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 import time
+from typing import TYPE_CHECKING
 
-# Period of the queries for subscribers, s: far below the time of discovery.
-ASK_EVERY = 0.05
+if TYPE_CHECKING:
+    from rclpy.publisher import Publisher
+
+# Longest age of a cached subscriber count, s: far below the duration of discovery.
+SUBSCRIBER_COUNT_AGE = 0.05
 
 
 class Throttle:
     """
-    Limits how often a repeated message is logged.
+    Limits how often something is done, usually a log message.
 
     rclpy's own `throttle_duration_sec` searches the source files for its caller at every call,
-    logged or not: about 1 ms, in a callback that may run at 1 kHz.
+    logged or not. That takes nearly a millisecond, in a callback that may run at 1 kHz.
 
     """
 
-    def __init__(self, period, clock=time.monotonic):
+    def __init__(self, period: float, clock: Callable[[], float] = time.monotonic) -> None:
         """
-        Let the first message pass.
+        Start due.
 
         Parameters
         ----------
         period : float
-            Shortest time between two messages, s.
+            Shortest time between two actions, s.
         clock : callable() -> float
             Steady, s.
 
@@ -31,8 +38,8 @@ class Throttle:
         self._clock = clock
         self._next = float('-inf')
 
-    def is_due(self):
-        """Return whether the message may be logged now; if so, restart the period."""
+    def is_due(self) -> bool:
+        """Return whether the action is due now; if so, the period begins again."""
         now = self._clock()
         if now < self._next:
             return False
@@ -42,7 +49,7 @@ class Throttle:
 
 class Rate:
     """
-    Rate of an event, from a counter that is read from time to time.
+    Rate of events, from two readings of a counter.
 
     Attributes
     ----------
@@ -51,11 +58,11 @@ class Rate:
 
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.value = 0.0
-        self._last = (0.0, 0)
+        self._last: tuple[float, int] = (0.0, 0)
 
-    def measure(self, now, count):
+    def measure(self, now: float, count: int) -> None:
         """
         Take a reading.
 
@@ -64,7 +71,7 @@ class Rate:
         now : float
             s.
         count : int
-            A smaller count than before restarts the measurement.
+            Events so far; a smaller number than before means that the counter was reset.
 
         """
         before, earlier = self._last
@@ -74,28 +81,28 @@ class Rate:
 
 class HasSubscribers:
     """
-    Tells whether a publisher has subscribers.
+    Truth value: whether a publisher has subscribers.
 
     Querying the subscriber count costs more than computing a torque, so it is cached.
 
     """
 
-    def __init__(self, publisher, period=ASK_EVERY):
+    def __init__(self, publisher: Publisher, period: float = SUBSCRIBER_COUNT_AGE) -> None:
         """
-        Query at the first use.
+        Start without a count; the first use queries it.
 
         Parameters
         ----------
         publisher : rclpy.publisher.Publisher
         period : float
-            Time for which a count is cached, s.
+            Longest age of the cached count, s.
 
         """
         self._publisher = publisher
         self._due = Throttle(period)
         self._has_subscribers = False
 
-    def __bool__(self):
+    def __bool__(self) -> bool:
         if self._due.is_due():
             self._has_subscribers = self._publisher.get_subscription_count() > 0
         return self._has_subscribers

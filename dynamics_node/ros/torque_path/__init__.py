@@ -1,7 +1,7 @@
 """
-From a joint state to the command of the controller, and every check that can stop it.
+The torque path: from a joint state to a command, and the checks that can stop it.
 
-What may change here: how messages become calls of `safety.TorquePath` and commands become
-messages. What is sent is decided in `safety`.
+What may change here: the conversion between messages and calls of `safety.TorquePath`. The
+commands themselves are decided in `safety`.
 
 """

@@ -1,6 +1,12 @@
-"""The robot in force: model, chosen joints and measured state, replaced as one."""
+"""The robot in force: model, chosen joints and measured state, replaced together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..parameters.model_settings import configured
 from ...dynamics import Compensation, JointSelection, RobotModel
@@ -9,18 +15,23 @@ from ...model import build_tree
 from ...safety import JointStateBuffer, MotionLimits
 from ...urdf import read_urdf
 
+# Maximum number of joints listed in a message about position limits.
+_MAX_LISTED = 8
+# Relative tolerance of a position computed to be at its limit.
+_ROUNDING = 1e-9
 
-def read_robot(source, values):
+
+def read_robot(source: str | bytes, values: Mapping[str, Any]) -> ActiveRobot:
     """
-    Make the robot of a description.
+    Read a robot from a description.
 
     Parameters
     ----------
     source : str or bytes
         Path or text of the URDF.
-    values : dict of str to Any
-        Of the parameters: `joints`, and `machine_code`, without which the model never starts a
-        compiler.
+    values : mapping of str to Any
+        Of the parameters: `joints`, and `machine_code`; if that is false, the model never starts
+        a compiler.
 
     Returns
     -------
@@ -30,7 +41,7 @@ def read_robot(source, values):
     Raises
     ------
     DynamicsError
-        If the description is refused, or has no joint that can be moved.
+        If the description is refused, or has no movable joint.
 
     """
     tree = build_tree(read_urdf(source))
@@ -39,13 +50,8 @@ def read_robot(source, values):
     return ActiveRobot(RobotModel(tree, compile=values['machine_code']), values['joints'])
 
 
-# Maximum number of joints that a message lists as beyond their position limits.
-_MOST_SHOWN = 8
-_ROUNDING = 1e-9
-
-
 class StateUnavailableError(DynamicsError):
-    """The newest measured state was requested, and it is too old or missing."""
+    """A request needs the newest measured state, and no fresh one exists."""
 
 
 class ActiveRobot:
@@ -55,24 +61,24 @@ class ActiveRobot:
     Attributes
     ----------
     model : RobotModel
-        As the parameters say; replaced when they change.
+        Configured by the parameters; replaced when they change.
     selection : JointSelection
         The parameter `joints`.
     buffer : JointStateBuffer
         Measured states of all joints of the model.
     has_all_in_order : bool
-        Whether the chosen joints are those of the model in its order, so that nothing has to
-        be picked out.
+        Whether the chosen joints are all joints of the model, in its order, so that no selection
+        is needed.
     refused_since : str
-        Why a newer description was refused; '' if none was.
+        Reason for which a newer description was refused; '' if none was.
     state_publishers : int
-        How many nodes publish its joint states; 0 while that is not known.
+        Number of nodes that publish its joint states; 0 while unknown.
 
     """
 
-    def __init__(self, model, joints):
+    def __init__(self, model: RobotModel, joints: Sequence[str]) -> None:
         """
-        Create a robot without measured state.
+        Start without measured states.
 
         Parameters
         ----------
@@ -92,21 +98,24 @@ class ActiveRobot:
             model.joint_names, self.selection.names, model.neutral_position, self.motion_limits(())
         )
         self.refused_since = ''
-        self._asked: tuple | None = None
-        self._answer = model
+        # Arguments and result of the last call of `configured`.
+        self._configured_for: tuple | None = None
+        self._configured_model = model
         self.state_publishers = 0
         self.has_all_in_order = self.selection.names == tuple(model.joint_names)
 
-    def configure(self, values, before=None):
+    def configure(
+        self, values: Mapping[str, Any], before: Mapping[str, Any] | None = None
+    ) -> None:
         """
         Apply the parameters to the model.
 
         Parameters
         ----------
-        values : dict of str to Any
+        values : mapping of str to Any
             Of the parameters.
-        before : dict of str to Any, optional
-            Those that the model was made with.
+        before : mapping of str to Any, optional
+            Parameters of the present model.
 
         Raises
         ------
@@ -116,13 +125,15 @@ class ActiveRobot:
         """
         self.model = self.configured(values, before)
 
-    def configured(self, values, before=None):
+    def configured(
+        self, values: Mapping[str, Any], before: Mapping[str, Any] | None = None
+    ) -> RobotModel:
         """
         Return the model that `configure` would set; the last result is cached.
 
         Parameters
         ----------
-        values, before : dict of str to Any
+        values, before : mapping of str to Any
             See `configure`.
 
         Returns
@@ -135,19 +146,19 @@ class ActiveRobot:
             See `model_settings.configured`.
 
         """
-        question = (self.model, values, before)
-        if question != self._asked:
-            self._answer = configured(self, values, before)
-            self._asked = question
-        return self._answer
+        arguments = (self.model, values, before)
+        if arguments != self._configured_for:
+            self._configured_model = configured(self, values, before)
+            self._configured_for = arguments
+        return self._configured_model
 
     @property
-    def joint_names(self):
+    def joint_names(self) -> tuple[str, ...]:
         """The chosen joints, in the order of answers and commands."""
         return self.selection.names
 
-    def compensation(self, values):
-        """Return the `Compensation` that the parameters ask for."""
+    def compensation(self, values: Mapping[str, Any]) -> Compensation:
+        """Return the `Compensation` with the terms that the parameters select."""
         return Compensation(
             self.model,
             None if self.has_all_in_order else self.selection.index,
@@ -156,14 +167,14 @@ class ActiveRobot:
             values['compensate.friction'],
         )
 
-    def motion_limits(self, velocity_limits):
+    def motion_limits(self, velocity_limits: Sequence[float]) -> MotionLimits:
         """
-        Return the motion limits of the joints.
+        Return the position and velocity limits of the joints.
 
         Parameters
         ----------
         velocity_limits : sequence of float
-            The parameter, of the chosen joints; empty for those of the URDF.
+            The parameter, of the chosen joints, rad/s or m/s; empty for those of the URDF.
 
         Returns
         -------
@@ -182,7 +193,7 @@ class ActiveRobot:
             allowed,
         )
 
-    def measured_position(self, now, timeout):
+    def measured_position(self, now: float, timeout: float) -> NDArray[np.float64]:
         """
         Return the newest measured positions of all joints.
 
@@ -201,7 +212,7 @@ class ActiveRobot:
         Raises
         ------
         StateUnavailableError
-            If a chosen joint is not fresh; says which and what to do.
+            If a chosen joint is not fresh; the message names it and the remedy.
 
         """
         stale = self.buffer.stale_joints(now, timeout)
@@ -219,46 +230,46 @@ class ActiveRobot:
             )
         return self.buffer.position
 
-    def beyond_limits(self, index, positions):
+    def beyond_limits(self, index: NDArray[np.intp], positions: NDArray[np.float64]) -> str:
         """
-        Return which positions in a request are beyond the position limits.
+        Describe the positions of a request that are beyond the position limits.
 
         Parameters
         ----------
         index : numpy.ndarray of int, shape (m,)
-            Places of the joints in the request.
+            Model indices of the joints in the request.
         positions : numpy.ndarray, shape (m,) or (N, m)
             Of one state or of N, rad or m.
 
         Returns
         -------
         str
-            To append to a message: of each such joint the position furthest beyond, at most
-            eight joints; '' if there is none.
+            To append to a message: the furthest position of each such joint, at most
+            _MAX_LISTED joints; '' if there is none.
 
         """
         lower, upper = self.model.position_limits[index].T
-        # A position that was computed to be at the limit may differ by rounding.
+        # A position computed to be at the limit may differ by rounding.
         slack = _ROUNDING * np.maximum(1.0, np.abs(positions))
         excess = np.atleast_2d(np.maximum(lower - positions, positions - upper) - slack)
         furthest = np.atleast_2d(positions)[excess.argmax(axis=0), np.arange(len(index))]
         beyond = np.flatnonzero(excess.max(axis=0) > 0.0)
-        shown = [
+        listed = [
             f'{self.model.joint_names[index[i]]} at {furthest[i]:.6g} (limits {lower[i]:g} '
             f'to {upper[i]:g})'
-            for i in beyond[:_MOST_SHOWN]
+            for i in beyond[:_MAX_LISTED]
         ]
-        more = f' and {len(beyond) - len(shown)} more' if len(beyond) > len(shown) else ''
-        return f'; beyond the position limits: {", ".join(shown)}{more}' if shown else ''
+        more = f' and {len(beyond) - len(listed)} more' if len(beyond) > len(listed) else ''
+        return f'; beyond the position limits: {", ".join(listed)}{more}' if listed else ''
 
-    def unseen_others(self, index, now, timeout):
+    def unseen_others(self, index: NDArray[np.intp], now: float, timeout: float) -> str:
         """
-        Return which of the other joints have no fresh position.
+        Describe the joints outside a request that have no fresh position.
 
         Parameters
         ----------
-        index : numpy.ndarray of int
-            Places of the joints in the request.
+        index : numpy.ndarray of int, shape (m,)
+            Model indices of the joints in the request.
         now : float
             Steady clock, s.
         timeout : float
@@ -277,12 +288,12 @@ class ActiveRobot:
             else ''
         )
 
-    def stale_others(self, index, now, timeout):
-        """Return the names of the joints in the text of `unseen_others`, a list of str."""
+    def stale_others(self, index: NDArray[np.intp], now: float, timeout: float) -> list[str]:
+        """Return the names of the joints that `unseen_others` describes."""
         others = np.setdiff1d(np.arange(len(self.model.joint_names)), index)
         return self.buffer.stale_joints(now, timeout, others.tolist())
 
-    def effort_limits(self, given):
+    def effort_limits(self, given: Sequence[float]) -> NDArray[np.float64]:
         """
         Return the effort limits of the chosen joints.
 
@@ -294,30 +305,35 @@ class ActiveRobot:
         Returns
         -------
         numpy.ndarray, shape (m,)
-            N m or N; NaN where neither states one.
+            N m or N; NaN where neither has a limit.
 
         """
         return np.array(given) if given else self.model.effort_limits[self.selection.index]
 
-    def over_limits(self, values, model=None, before=None):
+    def over_limits(
+        self,
+        values: Mapping[str, Any],
+        model: RobotModel | None = None,
+        before: Mapping[str, Any] | None = None,
+    ) -> str:
         """
-        Return which chosen joints cannot hold the robot still at the newest state.
+        Describe the chosen joints that cannot hold the robot at the newest state.
 
         Parameters
         ----------
-        values : dict of str to Any
+        values : mapping of str to Any
             Of the parameters.
         model : RobotModel, optional
             Instead of the one in force.
-        before : dict of str to Any, optional
-            Parameters of the model in force: a joint that stays at its limit, on the same side,
-            does not count.
+        before : mapping of str to Any, optional
+            Parameters of the model in force: a joint that was over its limit with them, on the
+            same side, does not count.
 
         Returns
         -------
         str
             Joint, gravity torque and limit each; '' if there is none, or no state. A torque
-            that is no number counts as one above every limit.
+            that is not finite is above every limit.
 
         """
         if not self.buffer.is_complete:
@@ -333,25 +349,35 @@ class ActiveRobot:
             for i in np.flatnonzero(is_over)
         )
 
-    def _scaled_gravity_torque(self, model, values):
+    def _scaled_gravity_torque(
+        self, model: RobotModel, values: Mapping[str, Any]
+    ) -> NDArray[np.float64]:
         G = model.gravity_torque(self.buffer.position)[self.selection.index]
         return G * (values['effort_scale'] or 1.0)
 
-    def unlimited_joints(self, given):
-        """Return the names of the chosen joints that have no effort limit, a list of str."""
+    def unlimited_joints(self, given: Sequence[float]) -> list[str]:
+        """
+        Return the names of the chosen joints without an effort limit.
+
+        Parameters
+        ----------
+        given : sequence of float
+            The parameter `effort_limits`; empty for the URDF's.
+
+        """
         return [
             name
             for name, limit in zip(self.joint_names, self.effort_limits(given), strict=True)
             if np.isnan(limit)
         ]
 
-    def above_urdf(self, values):
+    def above_urdf(self, values: Mapping[str, Any]) -> str:
         """
-        Return which limits of the parameters are above those of the URDF.
+        Describe the limits of the parameters that are above those of the URDF.
 
         Parameters
         ----------
-        values : dict of str to Any
+        values : mapping of str to Any
             Of the parameters.
 
         Returns
@@ -361,22 +387,22 @@ class ActiveRobot:
 
         """
         index = self.selection.index
-        stated = {
+        limits_of_urdf = {
             'effort_limits': self.model.effort_limits[index],
             'velocity_limits': self.model.velocity_limits[index],
         }
         return '; '.join(
             f'{parameter} of {name}: {given:g}, in the URDF {limit:g}'
-            for parameter, limits in stated.items()
+            for parameter, limits in limits_of_urdf.items()
             for name, given, limit in zip(
                 self.joint_names, values[parameter], limits, strict=False
             )
             if given > limit
         )
 
-    def joints_without_velocity_limit(self, given=()):
+    def joints_without_velocity_limit(self, given: Sequence[float] = ()) -> list[str]:
         """
-        Return the names of the chosen joints whose speed has no limit.
+        Return the names of the chosen joints without a velocity limit.
 
         Parameters
         ----------
@@ -395,8 +421,8 @@ class ActiveRobot:
             name for name, limit in zip(self.joint_names, limits, strict=True) if np.isnan(limit)
         ]
 
-    def is_mass_matrix_positive_definite(self):
-        """Tell whether D of the chosen joints is positive definite at the newest state."""
+    def is_mass_matrix_positive_definite(self) -> bool:
+        """Return whether D of the chosen joints is positive definite at the newest state."""
         index = self.selection.index
         D = self.model.mass_matrix(self.buffer.position)[np.ix_(index, index)]
         if not np.isfinite(D).all():

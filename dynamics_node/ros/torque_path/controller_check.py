@@ -1,4 +1,9 @@
-"""Check that subscribers of the command topic expect these efforts and are active."""
+"""Check that the controllers on the command topic expect its efforts, and are active."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, TYPE_CHECKING
 
 from lifecycle_msgs.msg import State, TransitionEvent
 from lifecycle_msgs.srv import GetState
@@ -8,43 +13,58 @@ from rclpy.qos import QoSProfile
 
 from ..support.qos import NO_SUBSCRIPTION_EVENTS
 
-try:  # part of ros2_control: on a robot with controllers it is there
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+try:  # part of ros2_control, so present on robots with its controllers
     from controller_manager_msgs.srv import ListControllers
 except ImportError:
     ListControllers = None
 
-# Longest time for a subscriber's services to be discovered and to answer, s.
+# Longest time for the discovery and the answers of the services of a listener, s.
 ANSWER_WITHIN = 1.0
-# Name that rmw reports for a partly discovered node.
+# Name that rmw reports for a node whose discovery is incomplete.
 UNKNOWN_NAME = '_NODE_NAME_UNKNOWN_'
 EVENTS = QoSProfile(depth=10)
 PARAMETERS = ('joints', 'interface_name')
+_LIFECYCLE_NAMES = {
+    State.PRIMARY_STATE_UNCONFIGURED: 'unconfigured',
+    State.PRIMARY_STATE_INACTIVE: 'inactive',
+    State.PRIMARY_STATE_ACTIVE: 'active',
+    State.PRIMARY_STATE_FINALIZED: 'finalized',
+    State.TRANSITION_STATE_CONFIGURING: 'configuring',
+    State.TRANSITION_STATE_CLEANINGUP: 'being cleaned up',
+    State.TRANSITION_STATE_SHUTTINGDOWN: 'shutting down',
+    State.TRANSITION_STATE_ACTIVATING: 'being activated',
+    State.TRANSITION_STATE_DEACTIVATING: 'being deactivated',
+    State.TRANSITION_STATE_ERRORPROCESSING: 'in error',
+}
 
 
 class Controllers:
     """
-    Checks that the controllers on the command topic expect efforts for the same joints in order.
+    Compares the controllers on the command topic with the commands of the node, periodically.
 
-    An array of efforts says nothing about its joints: a controller with another order gives
-    every joint the effort of another one, and one for positions takes efforts for angles. The
-    controllers of ros2_control state both as parameters, `joints` and `interface_name`, and
-    publish their lifecycle on `transition_event`. A listener without these parameters is trusted.
+    An array of efforts does not name its joints: a controller with another order gives every joint
+    the effort of another one, and a position controller reads efforts as angles. The controllers
+    of ros2_control have both as parameters, `joints` and `interface_name`, and publish their
+    lifecycle on `transition_event`. A listener without these parameters is trusted.
 
     Attributes
     ----------
     listeners : dict of str to Listener
-        Fully qualified name → what is known of it.
+        Fully qualified name → its state.
     has_unnamed : bool
-        Whether discovery knows a listener whose name it does not know yet.
+        Whether a listener was discovered without its name.
     renewed : list of str
-        Names of the controllers that were started again before the last `update`. A killed node
-        stays in the graph for up to 20 s, beside the new node of the same name.
+        Names of the controllers that were restarted before the last `update`. A killed node stays
+        in the graph for up to 20 s, beside the new node of the same name.
 
     """
 
-    def __init__(self, node, topic):
+    def __init__(self, node: Node, topic: str) -> None:
         """
-        Watch the listeners of a topic, whenever `update` is called.
+        Start without listeners; `update` finds them.
 
         Parameters
         ----------
@@ -60,18 +80,18 @@ class Controllers:
         self.renewed: list[str] = []
         self._new: list[str] = []
 
-    def update(self):
+    def update(self) -> list[str]:
         """
-        Find the subscribers, ask new ones, and read the answers.
+        Find the listeners, send requests to new ones, and read the answers.
 
         Returns
         -------
         list of str
-            Names of the controllers that no longer listen. One that has been replaced by another
-            of the same name is among them.
+            Names of the controllers that no longer listen, also of one that was replaced by
+            another of the same name.
 
         """
-        found = self._found()
+        found = self._endpoints_by_name()
         before = {name: item.endpoints for name, item in self.listeners.items()}
         gone = [
             name
@@ -93,28 +113,28 @@ class Controllers:
             name for name in self._new if name in before and self.listeners[name].is_controller
         ]
         for name in self.renewed:
-            self._ask_anew(name)
+            self._replace(name)
         return sorted(item.name for item in closed if item.is_controller)
 
-    def _ask_anew(self, name):
+    def _replace(self, name: str) -> None:
         # The new process may have other parameters and another lifecycle state.
         before = self.listeners[name]
         before.close()
         self.listeners[name] = Listener(self._node, name)
         self.listeners[name].endpoints = before.endpoints
 
-    def ask_again(self):
-        """Discard the answers: parameters of the controllers may have changed."""
+    def ask_again(self) -> None:
+        """Discard the answers of all listeners: their parameters may have changed."""
         for listener in self.listeners.values():
             listener.ask_again()
 
-    def is_waiting(self):
-        """Whether a listener has yet to be named or to answer."""
+    def is_waiting(self) -> bool:
+        """Return whether the name or the answers of a listener are missing."""
         return self.has_unnamed or any(not item.has_answered for item in self.listeners.values())
 
-    def refusals(self, joint_names):
+    def refusals(self, joint_names: Sequence[str]) -> list[str]:
         """
-        Return why the listeners must not be driven.
+        Return every reason of the listeners against sending efforts to them.
 
         Parameters
         ----------
@@ -132,11 +152,11 @@ class Controllers:
             for reason in item.mismatches(list(joint_names)) + item.inactive()
         ]
 
-    def notes(self):
-        """Return what could not be checked, a list of str."""
+    def notes(self) -> list[str]:
+        """Return a message for each listener without an answer or a name."""
         notes = [
-            f'{item.name}, which listens there, did not say within {ANSWER_WITHIN:g} s which '
-            'joints it drives; it is asked on, and stops the output if it does not fit'
+            f'{item.name}, which listens there, did not report its joints within '
+            f'{ANSWER_WITHIN:g} s; the node keeps asking, and stops the output if they differ'
             for item in self.listeners.values()
             if not item.has_answered
         ]
@@ -144,27 +164,26 @@ class Controllers:
             notes.append('a listener there has not been identified yet')
         return notes
 
-    def has_listener(self):
-        """Whether there is a listener that may be a controller."""
+    def has_listener(self) -> bool:
+        """Return whether a listener exists that may be a controller."""
         return bool(self.listeners) or self.has_unnamed
 
-    def takes_commands(self):
-        """Return whether a controller that is not inactive has got the last commands."""
+    def takes_commands(self) -> bool:
+        """Return whether a controller that is not inactive received the last commands."""
         return any(
             item.is_controller and not item.inactive()
             for name, item in self.listeners.items()
             if name not in self._new
         )
 
-    def _found(self):
-        # Name → endpoints of each listener.
+    def _endpoints_by_name(self) -> dict[str, set]:
         own = self._node.get_fully_qualified_name()
         infos = self._node.get_subscriptions_info_by_topic(self._topic)
         self.has_unnamed = any(info.node_name in ('', UNKNOWN_NAME) for info in infos)
         found: dict[str, set] = {}
         for info in infos:
             name = f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-            # Other hidden names belong to command line tools, which have no parameters.
+            # Other hidden names are those of command line tools, which have no parameters.
             if info.node_name and not info.node_name.startswith('_') and name != own:
                 found.setdefault(name, set()).add(tuple(info.endpoint_gid))
         return found
@@ -183,18 +202,19 @@ class Listener:
 
     """
 
-    def __init__(self, node, name):
+    def __init__(self, node: Node, name: str) -> None:
         self.name = name
         self.endpoints: set = set()
         self._node = node
-        self._clients: dict = {}
-        self._answers: dict = {}
-        self._state_answer = self._list_answer = None
-        self._events = None
+        self._clients: dict[str, Any] = {}
+        self._answers: dict[str, Any] = {}
+        self._state_answer: Any = None
+        self._list_answer: Any = None
+        self._events: Any = None
         self._state: int | None = None
 
-    def update(self):
-        """Ask as soon as that is possible, and read what has been answered."""
+    def update(self) -> None:
+        """Send the requests whose services are ready, and subscribe to the lifecycle events."""
         self._ask_parameters()
         self._ask_state()
         if self.has_answered:
@@ -208,34 +228,34 @@ class Listener:
                 event_callbacks=NO_SUBSCRIPTION_EVENTS,
             )
 
-    def ask_again(self):
-        """Discard the answers, but not an observed change of lifecycle."""
+    def ask_again(self) -> None:
+        """Discard the answers, but not the lifecycle of the last event."""
         self._answers = {}
         self._state_answer = self._list_answer = None
 
     @property
-    def has_answered(self):
-        """Whether its parameters are known, and its lifecycle if it tells that."""
+    def has_answered(self) -> bool:
+        """Whether its parameters are known, and its lifecycle if it has the service."""
         answers = [*self._answers.values(), self._state_answer, self._list_answer]
         return bool(self._answers) and all(answer is None or answer.done() for answer in answers)
 
     @property
-    def is_controller(self):
-        """Whether it says which joints it drives."""
+    def is_controller(self) -> bool:
+        """Whether it has the parameter `joints`."""
         return self._value('joints').type == ParameterType.PARAMETER_STRING_ARRAY
 
-    def mismatches(self, joint_names):
-        """Return why its parameters forbid driving it, a list of str."""
+    def mismatches(self, joint_names: list[str]) -> list[str]:
+        """Return the differences between its parameters and the commands."""
         reasons = []
         joints = self._value('joints')
         if joints.type == ParameterType.PARAMETER_STRING_ARRAY:
-            theirs = list(joints.string_array_value)
-            if theirs != joint_names:
-                has_same = sorted(theirs) == sorted(joint_names)
-                what = 'order of the joints' if has_same else 'number or names of the joints'
+            its_joints = list(joints.string_array_value)
+            if its_joints != joint_names:
+                has_same = sorted(its_joints) == sorted(joint_names)
+                difference = 'order' if has_same else 'number or names'
                 reasons.append(
-                    f'{self.name} has another {what}: its parameter joints is '
-                    f'[{", ".join(theirs)}], here it is [{", ".join(joint_names)}]; '
+                    f'{self.name} has another {difference} of the joints: its parameter joints is '
+                    f'[{", ".join(its_joints)}], here it is [{", ".join(joint_names)}]; '
                     'make them equal'
                 )
         interface = self._value('interface_name')
@@ -249,8 +269,8 @@ class Listener:
             )
         return reasons
 
-    def inactive(self):
-        """Return a list with the reason if its lifecycle is known and not active."""
+    def inactive(self) -> list[str]:
+        """Return the reason, as a list, if its lifecycle is known and not active."""
         state = self._lifecycle()
         if state is None or state == 'active':
             return []
@@ -261,8 +281,8 @@ class Listener:
             f'with  ros2 control set_controller_state{manager} {controller} active'
         ]
 
-    def close(self):
-        """Destroy clients and subscription."""
+    def close(self) -> None:
+        """Destroy its clients and subscription."""
         self._release()
         if self._events is not None:
             self._node.destroy_subscription(self._events)
@@ -278,14 +298,14 @@ class Listener:
             None if self._answers else self._ready(GetParameters, f'{self.name}/get_parameters')
         )
         if client is not None:
-            # One at a time: rclcpp answers nothing at all if one of several does not exist.
+            # One request per parameter: rclcpp returns no value if one of several is missing.
             self._answers = {
                 name: client.call_async(GetParameters.Request(names=[name])) for name in PARAMETERS
             }
 
     def _ask_state(self):
-        # The lifecycle as the node offers it, or as the controller manager knows it: the
-        # controllers of ros2_control have no get_state of their own.
+        # From the node itself or from the controller manager: the controllers of ros2_control have
+        # no get_state of their own.
         if self._state_answer is None and (
             client := self._ready(GetState, f'{self.name}/get_state')
         ):
@@ -298,8 +318,9 @@ class Listener:
         ):
             self._list_answer = client.call_async(ListControllers.Request())
 
-    def _ready(self, kind, service):
-        # A client, made only where the service exists; None while it cannot be called.
+    def _ready(self, kind: Any, service: str) -> Any:
+        # A client of a service that is ready; None otherwise. Clients of missing services are not
+        # created.
         if service not in self._clients:
             if not self._node.count_services(service):
                 return None
@@ -307,10 +328,10 @@ class Listener:
         client = self._clients[service]
         return client if client.service_is_ready() else None
 
-    def _lifecycle(self):
-        # An observed change is newer than an earlier answer.
+    def _lifecycle(self) -> str | None:
+        # Events are newer than answers.
         if self._state is not None:
-            return _WORDS.get(self._state, f'in transition {self._state}')
+            return _LIFECYCLE_NAMES.get(self._state, f'in transition {self._state}')
         if self._state_answer is not None and self._state_answer.done():
             return self._state_answer.result().current_state.label
         if self._list_answer is not None and self._list_answer.done():
@@ -325,24 +346,10 @@ class Listener:
             )
         return None
 
-    def _changed(self, event):
+    def _changed(self, event: TransitionEvent) -> None:
         self._state = event.goal_state.id
 
-    def _value(self, name):
+    def _value(self, name: str) -> ParameterValue:
         answer = self._answers.get(name)
         values = answer.result().values if answer is not None and answer.done() else []
         return values[0] if values else ParameterValue()
-
-
-_WORDS = {
-    State.PRIMARY_STATE_UNCONFIGURED: 'unconfigured',
-    State.PRIMARY_STATE_INACTIVE: 'inactive',
-    State.PRIMARY_STATE_ACTIVE: 'active',
-    State.PRIMARY_STATE_FINALIZED: 'finalized',
-    State.TRANSITION_STATE_CONFIGURING: 'configuring',
-    State.TRANSITION_STATE_CLEANINGUP: 'being cleaned up',
-    State.TRANSITION_STATE_SHUTTINGDOWN: 'shutting down',
-    State.TRANSITION_STATE_ACTIVATING: 'being activated',
-    State.TRANSITION_STATE_DEACTIVATING: 'being deactivated',
-    State.TRANSITION_STATE_ERRORPROCESSING: 'in error',
-}

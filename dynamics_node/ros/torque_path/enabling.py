@@ -1,7 +1,11 @@
-"""The service ~/enable: every check before the arm is driven."""
+"""The service ~/enable: all checks before efforts are sent to the arm."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 import time
 import traceback
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -9,13 +13,20 @@ from rclpy.clock import Clock, ClockType
 from rclpy.task import Future
 from std_srvs.srv import SetBool
 
-from .controller_check import ANSWER_WITHIN
-from ..support.hints import unheard
+from .controller_check import ANSWER_WITHIN, Controllers
+from ..context import NodeContext
+from ..support.hints import no_subscriber_hint
 from ...safety import OutputState, self_compensating
 
-# Period at which the answers of the controllers are read, s.
-STEP = 0.02
-# A measured effort above this fraction of the limit comes from another process.
+if TYPE_CHECKING:
+    from .active_robot import ActiveRobot
+    from .command_output import CommandOutput
+    from .publisher_monitor import PublisherMonitor
+    from ..support.description_source import DescriptionSource
+
+# Period of the check for answers of the controllers, s.
+ANSWER_PERIOD = 0.02
+# Share of the effort limit above which a measured effort comes from another source.
 IN_FORCE = 0.05
 
 
@@ -30,7 +41,14 @@ class Enabling:
 
     """
 
-    def __init__(self, context, output, monitor, controllers, source):
+    def __init__(
+        self,
+        context: NodeContext,
+        output: CommandOutput,
+        monitor: PublisherMonitor,
+        controllers: Controllers,
+        source: DescriptionSource,
+    ) -> None:
         """
         Create the service.
 
@@ -55,13 +73,13 @@ class Enabling:
         self._source = source
         self._answers: Future | None = None
         self._canceled = 0
-        # The answer waits for the controllers while joint states go on: not in their group. Nor
-        # in that of the other services, which may wait: this one also stops the arm.
+        # Not in the group of the joint states, which continue while the answer waits for the
+        # controllers. Nor in that of the other services, which may wait: this one stops the arm.
         context.node.create_service(
             SetBool, '~/enable', self._requested, callback_group=ReentrantCallbackGroup()
         )
 
-    async def enable(self):
+    async def enable(self) -> tuple[bool, str]:
         """
         Switch the output on if every check passes.
 
@@ -69,35 +87,43 @@ class Enabling:
         -------
         success : bool
         message : str
-            What was done and what to know, or every reason why not.
+            The result with its notes, or every reason for the refusal.
 
         """
         if answer := self._already():
             return answer
-        self._source.offer_pending()  # what came while the output was on counts from now on
+        self._source.offer_pending()  # a description received while the output was on
         if reasons := self.refusals():
             return False, _refused(reasons)
-        asked, canceled = self._context.robot, self._canceled
+        robot_before, canceled = self._context.robot, self._canceled
         await self._ask_controllers()
         if canceled != self._canceled:
             return False, 'disabled on request before it was enabled'
         if answer := self._already():  # by another request meanwhile
             return answer
-        # All of it anew: time has passed.
+        # All checks again: time has passed.
         robot = self._context.robot
         reasons = self.refusals()
-        if robot is not asked:
+        if robot is not robot_before:
             reasons.append(
                 'the robot description has changed while the controllers were asked: ask again'
             )
         elif robot is not None:
             reasons += self._controllers.refusals(robot.joint_names)
-        if reasons:
+        if reasons or robot is None:
             return False, _refused(reasons)
         return True, self._begin(robot)
 
-    def disable(self):
-        """Switch the output off, or release what it holds; returned values as for `enable`."""
+    def disable(self) -> tuple[bool, str]:
+        """
+        Switch the output off, or release the efforts in force.
+
+        Returns
+        -------
+        success : bool
+        message : str
+
+        """
         self._canceled += 1
         state = self._path.state
         lost = [
@@ -117,8 +143,8 @@ class Enabling:
         was_off = state in (OutputState.HOLDING, OutputState.FAULT)
         return True, 'releasing the efforts in force' if was_off else 'stopping'
 
-    def refusals(self):
-        """Return every reason why the output must not be enabled now, as a list of str."""
+    def refusals(self) -> list[str]:
+        """Return every reason against enabling the output now."""
         if self._path.is_closed:
             return ['the node is shutting down']
         robot, values = self._context.robot, self._parameters.values
@@ -132,7 +158,7 @@ class Enabling:
             + self._monitor.description_conflicts()
         )
 
-    def _about_states(self, robot, values):
+    def _about_states(self, robot: ActiveRobot, values: Mapping[str, Any]) -> list[str]:
         timeout = values['state_timeout']
         stale = robot.buffer.stale_joints(time.monotonic(), timeout)
         if stale:
@@ -161,7 +187,7 @@ class Enabling:
             reasons.append(f'the arm moves faster than velocity_limits: {fast}')
         return reasons
 
-    def _about_limits(self, robot, values):
+    def _about_limits(self, robot: ActiveRobot, values: Mapping[str, Any]) -> list[str]:
         reasons = []
         unlimited = robot.unlimited_joints(values['effort_limits'])
         if unlimited:
@@ -173,7 +199,7 @@ class Enabling:
             reasons.append(f'{above}: lower it, or set allow_limits_above_urdf')
         return reasons
 
-    def _about_robot(self, robot, values):
+    def _about_robot(self, robot: ActiveRobot, values: Mapping[str, Any]) -> list[str]:
         reasons = []
         plugins = self_compensating(robot.model.tree.hardware_plugins)
         if plugins and not values['allow_self_compensating_arm']:
@@ -191,7 +217,9 @@ class Enabling:
             )
         return reasons
 
-    async def _requested(self, request, response):
+    async def _requested(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
         self.was_asked = True
         try:
             answer = await self.enable() if request.data else self.disable()
@@ -202,7 +230,7 @@ class Enabling:
         response.success, response.message = answer
         return response
 
-    def _already(self):
+    def _already(self) -> tuple[bool, str] | None:
         state = self._path.state
         if self._path.is_driving:
             return True, f'already enabled: {state.name}'
@@ -210,16 +238,16 @@ class Enabling:
             return False, 'still stopping: ask again when the state is READY'
         return None
 
-    async def _ask_controllers(self):
-        # One query for all waiting requests.
+    async def _ask_controllers(self) -> None:
+        # One query serves all requests that wait.
         if self._answers is None:
             self._controllers.ask_again()
             self._answers = answers = Future()
             timer = self._node.create_timer(
-                STEP, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME)
+                ANSWER_PERIOD, self._check_answers, clock=Clock(clock_type=ClockType.STEADY_TIME)
             )
             self._until = time.monotonic() + ANSWER_WITHIN
-            self._look()
+            self._check_answers()
             try:
                 await answers
             finally:
@@ -228,7 +256,7 @@ class Enabling:
         else:
             await self._answers
 
-    def _look(self):
+    def _check_answers(self) -> None:
         answers = self._answers
         if answers is None or answers.done():
             return
@@ -240,12 +268,12 @@ class Enabling:
         except Exception as error:
             answers.set_exception(error)
 
-    def _begin(self, robot):
+    def _begin(self, robot: ActiveRobot) -> str:
         notes = self._controllers.notes() + self._notes(robot)
         topic = self._output.topic
         if not self._controllers.has_listener() and not self._output.has_listener():
-            # Before the output is on: searching all topics takes time.
-            notes.append(unheard(self._node, self._output.publisher))
+            # Before the output is on, because the search through all topics takes time.
+            notes.append(no_subscriber_hint(self._node, self._output.publisher))
         if not self._output.enable():
             return 'the node is shutting down'
         if notes:
@@ -256,18 +284,18 @@ class Enabling:
             'when ~/state is ACTIVE, not before' + ''.join(f'; but {note}' for note in notes)
         )
 
-    def _notes(self, robot):
+    def _notes(self, robot: ActiveRobot) -> list[str]:
         values, notes = self._parameters.values, []
         names = robot.joints_without_velocity_limit(values['velocity_limits'])
         if names:
             notes.append(
-                f'jumps and runaway are not noticed of {", ".join(names)}: the URDF has '
+                f'jumps and runaway of {", ".join(names)} are not detected: the URDF has '
                 'no velocity limit there; set velocity_limits'
             )
         if names := robot.buffer.joints_without_velocity():
             notes.append(
                 f'joint_states have no velocity of {", ".join(names)}: a runaway is '
-                'noticed only by jumps of the position'
+                'detected only by jumps of the position'
             )
         notes += [
             text.lstrip('; ')
@@ -285,11 +313,11 @@ class Enabling:
             )
         return notes + self._in_force(robot, values)
 
-    def _in_force(self, robot, values):
-        # Efforts of another process, or those that hold the arm now: the first command replaces
-        # them by efforts near zero.
+    def _in_force(self, robot: ActiveRobot, values: Mapping[str, Any]) -> list[str]:
+        # Efforts of another process may hold the arm now; the first command, which is near zero,
+        # replaces them.
         if self._path.output.limiter.last.any():
-            return []  # this node's own, from which the ramp begins
+            return []  # efforts of this node, from which the ramp begins
         effort, limits = robot.buffer.needed_effort, robot.effort_limits(values['effort_limits'])
         applied = [
             f'{name}: {value:.4g}'
@@ -307,5 +335,5 @@ class Enabling:
         )
 
 
-def _refused(reasons):
+def _refused(reasons: list[str]) -> str:
     return 'refused: ' + '; '.join(reasons)

@@ -1,6 +1,15 @@
-"""Joint states from serialized bytes (CDR): names are parsed once, numbers every time."""
+"""
+Joint states from their serialized bytes (CDR): names once, numbers at every message.
+
+`JointStateReader` makes messages; `end_of_names` checks the size of an unknown message before
+rclpy allocates its names and numbers.
+
+"""
+
+from __future__ import annotations
 
 from array import array
+from collections.abc import Sequence
 import struct
 import sys
 
@@ -10,32 +19,44 @@ from sensor_msgs.msg import JointState
 from ...safety import RejectedStateError
 from ...safety.joint_state_buffer import MAX_NAMES, too_many_names
 
-# The representation that every ROS 2 middleware sends: plain CDR, little endian, no options.
-# Only that is read here, and only where the machine stores numbers in the same way.
+# Offset behind the representation, which is not part of the alignment: there the stamp begins.
+ORIGIN = 4
+# Offset behind the stamp: there the frame begins.
+FRAME = 12
+# Size of a count, bytes.
+_COUNT = 4
+# Size and alignment of a number, bytes.
+_DOUBLE = 8
+# The fast path reads plain CDR, little endian, no options, which every ROS 2 middleware sends,
+# and only where the machine stores numbers in the same way.
 _REPRESENTATION = b'\x00\x01\x00\x00' if sys.byteorder == 'little' else b''
 _STAMP = struct.Struct('<iI')
+_LITTLE_ENDIAN = struct.Struct('<I')
+# Representation → count, of plain CDR; the other representations are for extensible types.
+_COUNTS = {b'\x00\x00': struct.Struct('>I'), b'\x00\x01': _LITTLE_ENDIAN}
 
 
 class JointStateReader:
     """
     Reads a stream of serialized joint states of the same joints.
 
-    rclpy makes a new message of new strings from every state. A robot's states differ in stamp
-    and numbers alone, so frame and names are compared as bytes, and read by rclpy only when
-    they are new. Unexpected bytes are left to rclpy, if they are a joint state at all.
+    rclpy makes a new message with new strings from every state. The states of a robot differ
+    only in stamp and numbers, so frame and names are compared as bytes, and deserialized only
+    when they have changed. Unexpected bytes are passed to rclpy if they are a joint state.
 
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._message = JointState()
-        self._names = None
+        self._names: bytes | None = None
         self._end = 0
-        # Of positions, velocities and efforts in the last state: where their number is, as bytes,
-        # and where they are; and how long that state was.
+        # Of positions, velocities and efforts in the last state: place of their count, the count
+        # as bytes, and place of the numbers.
         self._spans: list[tuple[slice, bytes, slice]] = []
+        # Length of the last state, bytes.
         self._length = sys.maxsize
 
-    def read(self, data):
+    def read(self, data: bytes) -> JointState:
         """
         Return a serialized joint state as a message.
 
@@ -47,15 +68,15 @@ class JointStateReader:
         Returns
         -------
         sensor_msgs.msg.JointState
-            The same object every time, so it holds until the next call.
+            Valid until the next call, which reuses the object.
 
         Raises
         ------
         RejectedStateError
-            If it is no joint state, or says that it has more names or numbers than any robot:
-            before anything is made of them.
+            If the bytes are not a joint state, or claim more names or numbers than a robot can
+            have; raised before these are allocated.
         Exception
-            What rclpy raises if it finds fault with it all the same.
+            From rclpy, if it cannot deserialize the message.
 
         """
         if data[FRAME : self._end] == self._names and data[:ORIGIN] == _REPRESENTATION:
@@ -67,8 +88,8 @@ class JointStateReader:
                 return message
         return self._learn(data)
 
-    def _as_before(self, data):
-        # The numbers if they have the offsets of the last state; None if not.
+    def _as_before(self, data: bytes) -> Sequence[array] | None:
+        # The numbers if they have the places of the last state; None if not.
         if len(data) < self._length:
             return None
         numbers = []
@@ -78,8 +99,8 @@ class JointStateReader:
             numbers.append(array('d', data[span]))
         return numbers
 
-    def _measure(self, data):
-        # The numbers at newly found offsets; None if the data ends before the efforts.
+    def _measure(self, data: bytes) -> Sequence[array] | None:
+        # The numbers, at any places; None if the data ends before the efforts.
         spans, at = [], self._end
         for _ in range(3):
             place, span = _span(data, at)
@@ -93,7 +114,7 @@ class JointStateReader:
         self._spans, self._length = spans, efforts.stop
         return [array('d', data[span]) for _, _, span in spans]
 
-    def _learn(self, data):
+    def _learn(self, data: bytes) -> JointState:
         end = end_of_names(data)
         message = deserialize_message(data, JointState)
         self._names = None
@@ -103,33 +124,12 @@ class JointStateReader:
         return message
 
 
-def _span(data, at):
-    # Where a count and the numbers behind it are: beyond the end of the data if that was cut.
-    place = slice(at, at + _COUNT)
-    if place.stop > len(data):
-        return place, slice(place.stop, place.stop)
-    (count,) = _LITTLE_ENDIAN.unpack_from(data, at)
-    begin = place.stop
-    if count:
-        begin += (ORIGIN - begin) % _DOUBLE  # numbers begin at a multiple of their size
-    return place, slice(begin, begin + count * _DOUBLE)
-
-
-# Plain CDR: what ROS 2 middlewares send. The others are for types that can grow.
-_COUNTS = {b'\x00\x00': struct.Struct('>I'), b'\x00\x01': struct.Struct('<I')}
-# The representation, which is no part of the alignment, and behind it the stamp.
-ORIGIN, FRAME = 4, 12
-_COUNT = 4
-_LITTLE_ENDIAN = struct.Struct('<I')
-_DOUBLE = 8
-
-
-def end_of_names(data):
+def end_of_names(data: bytes) -> int:
     """
-    Check that bytes are a joint state of a possible size, and return the end of its names.
+    Check that bytes are a joint state of a possible size, and return where its names end.
 
-    A million names would keep rclpy, and so the arm, waiting for a second; and for many a wrong
-    message it prints a line of its own, however many come.
+    Deserializing a million names would block the process, and so the arm, for a second; and for
+    many malformed messages rclpy prints an unthrottled line.
 
     Parameters
     ----------
@@ -139,12 +139,12 @@ def end_of_names(data):
     Returns
     -------
     int
-        Where the positions begin.
+        Offset of the positions, bytes.
 
     Raises
     ------
     RejectedStateError
-        Kind 'unreadable', 'too many names', or 'length' for more numbers than names can be.
+        Kind 'unreadable', 'too many names', or 'length' for more numbers than MAX_NAMES.
 
     """
     number = _COUNTS.get(data[:2])
@@ -161,11 +161,11 @@ def end_of_names(data):
         for _ in range(count):
             at = _behind_text(data, at, number)
         end = at
-        for what in ('positions', 'velocities', 'efforts'):
+        for quantity in ('positions', 'velocities', 'efforts'):
             count, at = _count(data, at, number)
             if count > MAX_NAMES:
                 raise RejectedStateError(
-                    'length', f'expected at most {MAX_NAMES} {what}, got {count}'
+                    'length', f'expected at most {MAX_NAMES} {quantity}, got {count}'
                 )
             if count:
                 at += (ORIGIN - at) % _DOUBLE + count * _DOUBLE
@@ -179,11 +179,23 @@ def end_of_names(data):
     )
 
 
-def _behind_text(data, at, number):
+def _span(data: bytes, at: int) -> tuple[slice, slice]:
+    # Places of a count and of the numbers behind it; beyond the end of data that was cut.
+    place = slice(at, at + _COUNT)
+    if place.stop > len(data):
+        return place, slice(place.stop, place.stop)
+    (count,) = _LITTLE_ENDIAN.unpack_from(data, at)
+    begin = place.stop
+    if count:
+        begin += (ORIGIN - begin) % _DOUBLE  # numbers begin at a multiple of their size
+    return place, slice(begin, begin + count * _DOUBLE)
+
+
+def _behind_text(data: bytes, at: int, number: struct.Struct) -> int:
     (length,) = number.unpack_from(data, at)
-    # What follows a text begins at a multiple of four.
+    # The field behind a text begins at a multiple of four.
     return at + _COUNT + (length + 3) // 4 * 4
 
 
-def _count(data, at, number):
+def _count(data: bytes, at: int, number: struct.Struct) -> tuple[int, int]:
     return number.unpack_from(data, at)[0], at + _COUNT

@@ -1,11 +1,15 @@
-"""Subscription to the joint states: every message goes through the torque path at once."""
+"""Joint states: from the topic into the torque path."""
+
+from __future__ import annotations
 
 import time
+from typing import Any, Protocol, TYPE_CHECKING
 
 from rclpy.qos import QoSHistoryPolicy
 from sensor_msgs.msg import JointState
 
 from .joint_state_cdr import JointStateReader
+from ..context import NodeContext
 from ..support.callback_errors import guarded
 from ..support.callback_groups import TorqueGroup
 from ..support.qos import (
@@ -18,28 +22,45 @@ from ..support.qos import (
 from ..support.throttling import Throttle
 from ...safety import RejectedStateError
 
+if TYPE_CHECKING:
+    from .command_output import CommandOutput
+
 # Shortest time between two warnings of the same kind, s.
 WARN_EVERY = 1.0
-# Shortest time between two warnings about position limits, s: an arm may rest there for hours.
+# The same for positions beyond their limits, s: an arm may rest at its stop for hours.
 WARN_OF_LIMITS_EVERY = 30.0
+# The same for missing velocities, s.
+WARN_OF_VELOCITY_EVERY = 10.0
+
+
+class StateListener(Protocol):
+    """Receiver of the usable joint states."""
+
+    def on_state(self, stamp: Any) -> None:
+        """Receive the stamp of a usable state, after its command has been published."""
+
+    def on_internal_error(self, message: str) -> None:
+        """Receive the message of an exception in the callback."""
 
 
 class JointStateInput:
     """
-    Subscribes to the joint states, sends the command that follows from each, and passes it on.
+    Subscribes to the joint states and publishes the command of each.
 
     Attributes
     ----------
     subscription : rclpy.subscription.Subscription
     publishers : int
-        How many nodes publish joint states; see `count_publishers`.
+        Number of publishers of joint states; see `count_publishers`.
     skipped : int
-        States that were published and never looked at: a newer one was there before, or they
-        were lost on the way. Counted while there is one publisher.
+        Number of published states that were not processed: replaced by a newer one in the queue,
+        or lost in transport. Counted while there is one publisher.
 
     """
 
-    def __init__(self, context, output, listener, raw):
+    def __init__(
+        self, context: NodeContext, output: CommandOutput, listener: StateListener, raw: bool
+    ) -> None:
         """
         Subscribe.
 
@@ -47,16 +68,14 @@ class JointStateInput:
         ----------
         context : NodeContext
         output : CommandOutput
-        listener : object
-            With `on_state(stamp)` for every usable state, after its command has gone out, and
-            `on_internal_error(message)`.
+        listener : StateListener
         raw : bool
             Read the states by `JointStateReader` instead of rclpy.
 
         """
         self.logger = context.logger
         self._node = context.node
-        self._clock = context.node.get_clock()
+        self._clock: Any = context.node.get_clock()
         self._output = output
         self._path = output.path
         self._listener = listener
@@ -67,10 +86,10 @@ class JointStateInput:
         self._warnings: dict[str, Throttle] = {}
         self.publishers = self.skipped = 0
         self._callback, self._raw = self._bytes_received if raw else self._received, raw
-        # rclpy's overrides change it in place.
+        # rclpy applies the overrides of the parameters to this object.
         self._profile = joint_states(context.parameters['allow_several_state_publishers'])
         self.subscription = self._subscribe(qos_overriding_options=JOINT_STATES_OVERRIDES)
-        # Not if parameters set the depth.
+        # Queue settings of the parameters are never changed.
         self._adapts = (
             self._profile.depth == SINGLE_DEPTH
             and self._profile.history == QoSHistoryPolicy.KEEP_LAST
@@ -88,13 +107,13 @@ class JointStateInput:
             **options,
         )
 
-    def adapt_queue(self):
+    def adapt_queue(self) -> None:
         """
-        Count the publishers, and give the queue a place for each while the output is off.
+        Count the publishers, and adapt the depth of the queue while the output is off.
 
-        One place lets the newest state win, but of an arm's and a gripper's state that come
-        together it keeps only one. A new subscription may miss some states at first, so it is
-        not made while efforts are sent.
+        A queue of depth 1 keeps the newest state, but only one of the states of an arm and a
+        gripper that arrive together. A new subscription may miss its first states, so none is
+        created while efforts are sent.
 
         """
         several = self.count_publishers() > 1
@@ -107,12 +126,12 @@ class JointStateInput:
         self._sequence_number = 0
 
     @property
-    def topic(self):
+    def topic(self) -> str:
         """Resolved name of the topic."""
         return self.subscription.topic_name
 
-    def count_publishers(self):
-        """Look how many publishers there are; called now and then, because it takes time."""
+    def count_publishers(self) -> int:
+        """Query the number of publishers and return it; too slow for every state."""
         self.publishers = self._node.count_publishers(self.topic)
         return self.publishers
 
@@ -124,7 +143,7 @@ class JointStateInput:
         try:
             message = self._reader.read(data)
         except Exception as error:
-            # Any error of rclpy means an unusable message.
+            # Any exception of rclpy means that the message is unusable.
             if not isinstance(error, RejectedStateError):
                 error = RejectedStateError('unreadable', str(error))
             self._path.buffer.rejected[error.kind] += 1
@@ -168,9 +187,10 @@ class JointStateInput:
         outside = buffer.outside()
         if outside and self._is_due('outside', WARN_OF_LIMITS_EVERY):
             self.logger.warning(f'beyond the position limits: {outside}')
-        if self._path.compensation.needs_velocity and self._path.is_driving:
+        compensation = self._path.compensation
+        if compensation is not None and compensation.needs_velocity and self._path.is_driving:
             names = buffer.joints_without_velocity()
-            if names and self._is_due('velocity', 10.0):
+            if names and self._is_due('velocity', WARN_OF_VELOCITY_EVERY):
                 self.logger.warning(
                     f'joint_states have no velocity of {", ".join(names)}: '
                     'compensate.coriolis and compensate.friction take zero'
@@ -190,7 +210,7 @@ class JointStateInput:
         return self._clock.now().to_msg()
 
     def _count_skipped(self, info):
-        # Each publisher has its own count, and rclpy does not tell which one it was.
+        # Sequence numbers are per publisher, and rclpy does not identify the publisher.
         number = info['publication_sequence_number']
         if number is not None and self._sequence_number and self.publishers == 1:
             self.skipped += max(number - self._sequence_number - 1, 0)

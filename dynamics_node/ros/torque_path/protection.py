@@ -1,10 +1,19 @@
-"""The checks that go on while efforts are sent: other publishers, and the controllers."""
+"""Checks that run while efforts are sent: other publishers, and the controllers."""
+
+from __future__ import annotations
 
 import time
+from typing import TYPE_CHECKING
 
+from ..context import NodeContext
 from ..support.callback_errors import logged
 
-# Period of the lifecycle checks while the output is off, s.
+if TYPE_CHECKING:
+    from .command_output import CommandOutput
+    from .controller_check import Controllers
+    from .publisher_monitor import PublisherMonitor
+
+# Period of the lifecycle check of the controllers while the output is off, s.
 IDLE_EVERY = 1.0
 
 
@@ -12,12 +21,18 @@ class Protection:
     """
     Stops the output when another source of efforts appears or a controller does not fit.
 
-    A check that fails is noticed by the torque path, which stops when the last check that passed
-    is too long ago.
+    A check that raises is noticed by the torque path, which stops when the last completed check is
+    too old.
 
     """
 
-    def __init__(self, context, output, monitor, controllers):
+    def __init__(
+        self,
+        context: NodeContext,
+        output: CommandOutput,
+        monitor: PublisherMonitor,
+        controllers: Controllers,
+    ) -> None:
         """
         Create the checks; `check` runs them.
 
@@ -40,8 +55,8 @@ class Protection:
         self._next_idle = 0.0
 
     @logged
-    def check(self):
-        """Look for other publishers and at the controllers; called every 0.2 s."""
+    def check(self) -> None:
+        """Search for other publishers and check the controllers; called every 0.2 s."""
         now = time.monotonic()
         if self._path.is_driving:
             self._check_driven(now)
@@ -51,7 +66,7 @@ class Protection:
                 self._next_idle = now + IDLE_EVERY
                 self._follow_controllers(now)
 
-    def _check_driven(self, now):
+    def _check_driven(self, now: float) -> None:
         if not self._was_driving:
             self._was_driving, self._had_listener = True, self._controllers.has_listener()
         conflicts = self._monitor.conflicts()
@@ -64,14 +79,14 @@ class Protection:
         if has_listener and not self._had_listener:
             new = sorted(self._controllers.listeners) or ['a listener']
         if self._path.is_driving and new:
-            # It has missed the start ramp and would get the full effort at once.
+            # A new controller missed the start ramp: it would receive the whole effort at once.
             self._path.restart_from_zero(
                 time.monotonic(), f'{", ".join(new)} has begun to listen to the commands'
             )
         self._had_listener = has_listener
         self._path.monitored(time.monotonic())
 
-    def _follow_controllers(self, now):
+    def _follow_controllers(self, now: float) -> None:
         lost = self._controllers.update()
         if not self._path.is_on:
             return
@@ -82,12 +97,14 @@ class Protection:
         if inactive or gone:
             self._lose(now, '; '.join(inactive + gone))
             return
-        mismatches = self._controllers.refusals(self._context.robot.joint_names)
+        robot = self._context.robot
+        assert robot is not None, 'an output that is on has a robot'
+        mismatches = self._controllers.refusals(robot.joint_names)
         if mismatches:
             self._path.fault(now, '; '.join(mismatches))
 
-    def _lose(self, now, reason):
-        # Another controller must get the complete stop: it would keep the last effort.
+    def _lose(self, now: float, reason: str) -> None:
+        # Another controller must receive the whole stop, or it would keep the last effort.
         if not self._controllers.takes_commands():
             self._path.lose_controller(now, reason)
         elif self._path.is_driving:

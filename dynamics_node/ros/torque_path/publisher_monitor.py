@@ -1,15 +1,31 @@
 """Other publishers on topics that must have one source."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..context import NodeContext
+
+if TYPE_CHECKING:
+    from .joint_state_input import JointStateInput
+    from ..support.description_source import DescriptionSource
+
 
 class PublisherMonitor:
     """
-    Looks for a second source of efforts, joint states or robot descriptions.
+    Searches for a second source of efforts, joint states or robot descriptions.
 
-    Two sources make an arm jump between their values.
+    An arm with two sources jumps between their values.
 
     """
 
-    def __init__(self, context, command_topic, states, source):
+    def __init__(
+        self,
+        context: NodeContext,
+        command_topic: str,
+        states: JointStateInput,
+        source: DescriptionSource,
+    ) -> None:
         """
         Monitor the topics of a node.
 
@@ -28,8 +44,8 @@ class PublisherMonitor:
         self._source = source
         self._allows_several = context.parameters['allow_several_state_publishers']
 
-    def conflicts(self):
-        """Return every reason against sending efforts to the arm, a list of str."""
+    def conflicts(self) -> list[str]:
+        """Return a message for each second source of efforts or joint states."""
         reasons = []
         others = self._node.count_publishers(self._command_topic) - 1
         if others > 0:
@@ -48,8 +64,8 @@ class PublisherMonitor:
             )
         return reasons
 
-    def description_conflicts(self):
-        """Return why it is not certain which robot this is, a list of str."""
+    def description_conflicts(self) -> list[str]:
+        """Return a message if several nodes publish a robot description."""
         topic = self._source.topic
         if topic is None or (count := self._node.count_publishers(topic)) < 2:
             return []
@@ -59,7 +75,7 @@ class PublisherMonitor:
             'robot_description_file'
         ]
 
-    def _names(self, topic):
+    def _names(self, topic: str) -> str:
         own = f'{self._node.get_namespace().rstrip("/")}/{self._node.get_name()}'
         names = [
             f'{info.node_namespace.rstrip("/")}/{info.node_name}'
