@@ -5,6 +5,7 @@ The report names those that are missing. They are large, and pinned here and not
 
 """
 
+from importlib.util import find_spec
 from pathlib import Path
 import shutil
 import subprocess
@@ -36,15 +37,6 @@ def uv():
     return shutil.which('uv') or str(ROOT / 'log' / 'uv' / 'bin' / 'uv')
 
 
-def can_import(python, *modules, **environment):
-    """Tell whether a Python imports some modules."""
-    code = 'import ' + ', '.join(modules)
-    run = subprocess.run(
-        [python, '-c', code], env=environment or None, capture_output=True, check=False
-    )
-    return run.returncode == 0
-
-
 def install(requirements):
     """Install into this environment, without another version of what is locked."""
     frozen = ROOT / 'log' / 'installed.txt'
@@ -58,15 +50,19 @@ def install(requirements):
 
 def kdl_works():
     """Tell whether PyKDL's environment is complete."""
-    python = str(KDL / 'bin' / 'python')
-    return Path(python).exists() and can_import(
-        python, 'PyKDL', 'dynamics_node', LD_LIBRARY_PATH=str(KDL / 'lib'), PYTHONPATH=str(ROOT)
+    python = KDL / 'bin' / 'python'
+    environment = {'LD_LIBRARY_PATH': str(KDL / 'lib'), 'PYTHONPATH': str(ROOT)}
+    command = [str(python), '-c', 'import PyKDL, dynamics_node']
+    return (
+        python.exists()
+        and subprocess.run(command, env=environment, capture_output=True, check=False).returncode
+        == 0
     )
 
 
 def install_kdl():
     """Unpack PyKDL into an environment of the system's Python; nothing goes into the system."""
-    if can_import(sys.executable, 'PyKDL') or kdl_works():
+    if find_spec('PyKDL') is not None or kdl_works():
         return
     depends = subprocess.run(
         ['apt-cache', 'depends', 'python3-pykdl'], capture_output=True, text=True, check=True
@@ -95,7 +91,7 @@ def main():
     missing = []
     for module, requirements in REQUIREMENTS.items():
         try:
-            if not can_import(sys.executable, module):
+            if find_spec(module) is None:
                 install(requirements)
         except (OSError, subprocess.CalledProcessError):
             missing.append(module)
