@@ -199,6 +199,22 @@ class Evaluation:
             )
         return qdd.reshape(*batch_shape, self._n)
 
+    def regressor(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, threads: int | None = None
+    ) -> Array:
+        """Return the regressor of a motion with the batch axes of its arguments first."""
+        batch_shape, arrays = self.states(q=q, qd=qd, qdd=qdd)
+        shape = (self._n, 10 * self.packed.body_count)
+        Y = np.empty((len(arrays[0]), *shape))
+        _in_pieces(
+            lambda arrays, outputs: recursive.regressor(*self._arrays, *arrays, *outputs),
+            arrays,
+            [Y],
+            len(Y),
+            threads,
+        )
+        return Y.reshape(*batch_shape, *shape)
+
     def kinetic_energy(self, q: ArrayLike, qd: ArrayLike) -> Array:
         """Return T with the batch axes of q and qd."""
         batch_shape, [q, qd] = self.states(q=q, qd=qd)

@@ -17,7 +17,7 @@ from .payload import loaded_inertia, make_payload, Payload
 from .trajectory import complete_trajectory
 from ..codegen import RobotCode, Specialization
 from ..errors import ArgumentError
-from ..kernels.packing import pack
+from ..kernels.packing import pack, ten_numbers
 from ..model import build_tree
 from ..model.tree import KinematicTree
 from ..urdf import read_urdf
@@ -204,6 +204,17 @@ class RobotModel:
     def moving_mass(self) -> float:
         """Total mass of the moving bodies and the payload, kg."""
         return float(self._inertia[:, 3, 3].sum())
+
+    @property
+    def inertial_parameters(self) -> Array:
+        """
+        The ten numbers of every moving body's J with its payload, shape (10 N,).
+
+        m (kg), hx, hy, hz (kg m), xx, xy, xz, yy, yz, zz (kg m²) in the frame of the body: the
+        order of the columns of `regressor`.
+
+        """
+        return ten_numbers(self._inertia).reshape(-1)
 
     @property
     def position_limits(self) -> Array:
@@ -663,6 +674,40 @@ class RobotModel:
 
         """
         return self._evaluation.forward_dynamics(q, qd, tau, threads=threads)
+
+    def regressor(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, threads: int | None = None
+    ) -> Array:
+        """
+        Return the regressor Y of a motion: its efforts are Y φ for the inertial parameters φ.
+
+        `regressor(q, qd, qdd) @ inertial_parameters` is `inverse_dynamics(q, qd, qdd)` without
+        the inertia of rotors. It depends on gravity, but not on the masses of the model.
+
+        Parameters
+        ----------
+        q, qd, qdd : array_like, shape (..., n)
+            Joint positions, velocities and accelerations. Batch axes broadcast.
+        threads : int, optional
+            Largest number of threads for a large batch; at least 1.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., n, 10 N)
+            Ten columns per moving body, in the order of `tree.moving_joint_names`: m, hx, hy,
+            hz, then the second moments xx, xy, xz, yy, yz, zz, all in the frame of the body.
+
+        Raises
+        ------
+        ArgumentError
+            If a last axis is not n or batch axes do not broadcast.
+
+        References
+        ----------
+        docs/mathematics.md, equation (36).
+
+        """
+        return self._evaluation.regressor(q, qd, qdd, threads=threads)
 
     def friction_torque(self, qd: ArrayLike) -> Array:
         """

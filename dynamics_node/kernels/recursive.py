@@ -176,6 +176,28 @@ def inverse_dynamics(structure: Structure, numbers: Array, q: Array, qd: Array, 
 
 
 @compiled
+def regressor(structure: Structure, numbers: Array, q: Array, qd: Array, qdd: Array,
+              Y: Array) -> None:
+    """
+    Compute the regressor of B motions: the efforts are linear in the ten numbers of every J.
+
+    Parameters
+    ----------
+    structure, numbers : numpy.ndarray
+        See `PackedModel`; the inertia in it is not used.
+    q, qd, qdd : numpy.ndarray, shape (B, n)
+        Joint positions (rad or m), velocities, accelerations.
+    Y : numpy.ndarray, shape (B, n, 10 N)
+        Overwritten.
+
+    """
+    workspace = make_workspace(structure.shape[0])
+    Y[:] = 0.0
+    for b in range(q.shape[0]):
+        regressor_of_state(structure, numbers, q[b], qd[b], qdd[b], workspace, Y[b])
+
+
+@compiled
 def forward_dynamics(structure: Structure, numbers: Array, q: Array, qd: Array, tau: Array,
                      qdd: Array, is_definite: Array) -> None:
     """
@@ -315,6 +337,19 @@ def inverse_dynamics_of_state(structure: Structure, numbers: Array, q: Array, qd
     for k in range(structure.shape[0]):
         c = structure[k, Q_INDEX]
         tau[c] += numbers[k, ROTOR] * qdd[c]                                     # (28)
+
+
+@formula
+def regressor_of_state(structure: Structure, numbers: Array, q: Array, qd: Array, qdd: Array,
+                       workspace: Workspace, Y: Array) -> None:
+    """Add the regressor of one motion, shape (n, 10 N), to zeros, equation (36)."""
+    pose, twist, K, velocity, twist_rate, scratch = workspace
+    acceleration = scratch[:, :TWIST]
+    outward(structure, numbers, q, pose, twist, K)
+    outward_velocity(structure, numbers, qd, pose, twist, velocity, twist_rate)
+    outward_acceleration(structure, numbers, qd, qdd, pose, twist, velocity, twist_rate,
+                         acceleration)
+    inward_regressor(structure, numbers, pose, twist, velocity, acceleration, K, Y)
 
 
 @formula
@@ -802,14 +837,10 @@ def inward_efforts(structure: Structure, numbers: Array, pose: Array, twist: Arr
 
     """
     for k in range(structure.shape[0]):
-        h, sigma = _vector(K, k, 1), _second_moments(K, k, 4)
-        W, a, c = (_vector(velocity, k, 0), _vector(acceleration, k, 0),
-                   _vector(acceleration, k, 3))
-        # H has the left block [a]× + [W]×[W]× and the last column c; hence by (18):
-        _put(wrench, k, 0, _add(_axial(sigma, a),
-                                _add(_cross(_times(sigma, W), W), _cross(h, c))))
-        _put(wrench, k, 3, _add(_add(_cross(a, h), _cross(W, _cross(W, h))),
-                                _scale(K[k, 0], c)))
+        torque, force = _wrench(K, k, _vector(velocity, k, 0), _vector(acceleration, k, 0),
+                                _vector(acceleration, k, 3))
+        _put(wrench, k, 0, torque)
+        _put(wrench, k, 3, force)
     for j in range(structure.shape[0] - 1, -1, -1):
         torque, force = _vector(wrench, j, 0), _vector(wrench, j, 3)
         effort = numbers[j, MULTIPLIER] * _pair(twist, j, torque, force)
@@ -817,6 +848,54 @@ def inward_efforts(structure: Structure, numbers: Array, pose: Array, twist: Arr
         if structure[j, PARENT] >= 0:
             _accumulate(wrench, structure[j, PARENT], 0, _shift_to_parent(pose, j, torque, force))
             _accumulate(wrench, structure[j, PARENT], 3, force)
+
+
+@formula
+def _wrench(K: Array, k: int, W: Vector, a: Vector, c: Vector) -> tuple[Vector, Vector]:
+    # H K has the left block [a]× + [W]×[W]× and the last column c; hence by (18), in any axes:
+    h, sigma = _vector(K, k, 1), _second_moments(K, k, 4)
+    return (_add(_axial(sigma, a), _add(_cross(_times(sigma, W), W), _cross(h, c))),
+            _add(_add(_cross(a, h), _cross(W, _cross(W, h))), _scale(K[k, 0], c)))
+
+
+# Efforts per number of J -------------------------------------------------------------------
+
+
+@formula
+def inward_regressor(structure: Structure, numbers: Array, pose: Array, twist: Array,
+                     velocity: Array, acceleration: Array, unit: Array, Y: Array) -> None:
+    """
+    Add up the efforts that one unit of each of the ten numbers of every J takes, equation (36).
+
+    Parameters
+    ----------
+    structure, numbers, pose, twist, velocity, acceleration : numpy.ndarray
+        Results of the outward functions.
+    unit : numpy.ndarray, shape (N, 10)
+        Overwritten.
+    Y : numpy.ndarray, shape (n, 10 N)
+        Zero before; columns 10 k to 10 k + 9 are m, h and the second moments of body k.
+
+    """
+    for k in range(structure.shape[0]):
+        R = _matrix(pose, k, OF_ROTATION)
+        to_body = _transposed(R)
+        # J is constant in the axes of the body, so its wrench is taken there.
+        W = _times(to_body, _vector(velocity, k, 0))
+        a = _times(to_body, _vector(acceleration, k, 0))
+        c = _times(to_body, _vector(acceleration, k, 3))
+        for p in range(10):
+            for other in range(10):
+                unit[k, other] = 0.0
+            unit[k, p] = 1.0
+            torque, force = _wrench(unit, k, W, a, c)
+            torque, force = _times(R, torque), _times(R, force)
+            i = k
+            while i >= 0:
+                Y[structure[i, Q_INDEX], 10 * k + p] += (numbers[i, MULTIPLIER]   # (19)
+                                                         * _pair(twist, i, torque, force))
+                torque = _shift_to_parent(pose, i, torque, force)
+                i = structure[i, PARENT]
 
 
 # Vectors of three numbers and row-major matrices of nine -----------------------------------

@@ -23,6 +23,7 @@ def warm_up() -> None:
     recursive.gravity_torque(structure, numbers, q, vector, np.empty(1))
     recursive.gravity_torque_of_one(structure, numbers, q[0], vector[0])
     recursive.inverse_dynamics(structure, numbers, q, q, q, vector)
+    recursive.regressor(structure, numbers, q, q, q, np.empty((1, 1, 10)))
     recursive.jacobian(structure, numbers, q, 0, np.zeros(3), np.empty((1, 6, 1)))
     recursive.body_poses(
         structure, numbers, q, np.zeros(1, dtype=np.int64), np.empty((1, 1, 3, 4))

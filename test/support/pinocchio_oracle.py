@@ -44,6 +44,20 @@ class PinocchioOracle:
         x = self._configuration(B @ q + b)
         return B.T @ pinocchio.rnea(self.model, self.data, x, B @ qd, B @ qdd)
 
+    def regressor(self, names, moving_names, q, qd, qdd):
+        """Return the joint torque regressor, shape (n, 10 N), columns as ours per moving joint."""
+        B, b = self.fold(list(names))
+        x = self._configuration(B @ q + b)
+        Y = pinocchio.computeJointTorqueRegressor(self.model, self.data, x, B @ qd, B @ qdd)
+        blocks = []
+        for name in moving_names:
+            first = 10 * (self.model.getJointId(name) - 1)
+            m, hx, hy, hz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz = Y[:, first : first + 10].T
+            # I = tr(Sigma) 1 - Sigma
+            sigma = Iyy + Izz, -Ixy, -Ixz, Ixx + Izz, -Iyz, Ixx + Iyy
+            blocks += [m, hx, hy, hz, *sigma]
+        return B.T @ np.column_stack(blocks)
+
     def forward_dynamics(self, names, q, qd, tau):
         """Return the accelerations of efforts, shape (n,): by articulated bodies."""
         B, b = self.fold(list(names))
