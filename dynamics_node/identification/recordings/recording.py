@@ -52,4 +52,6 @@ class Recording:
     @property
     def duration(self) -> float:
         """Time that the segments cover, s."""
-        return float(sum(self.time[part.stop - 1] - self.time[part.start] for part in self.segments))
+        return float(
+            sum(self.time[part.stop - 1] - self.time[part.start] for part in self.segments)
+        )
