@@ -280,9 +280,11 @@ def effort_limiter(robot: ActiveRobot, values: Mapping[str, Any]) -> EffortLimit
     """
     limits = robot.effort_limits(values['effort_limits'])
     rates, scale = values['effort_rate_limits'], values['effort_scale']
+    offset = values['effort_offset']
     return EffortLimiter(
         limits,
         np.array(rates) if rates else limits / 0.1,
         np.array(scale) if scale else np.ones(len(limits)),
         robot.joint_names,
+        np.array(offset) if offset else None,
     )

@@ -1,4 +1,4 @@
-"""From an effort to a command: scaled, limited, and checked at the end."""
+"""From an effort to a command: scaled, offset, limited, and checked at the end."""
 
 from collections.abc import Sequence
 import math
@@ -16,10 +16,10 @@ class EffortLimiter:
     """
     Turns model efforts into commands that are safe to publish.
 
-    `target` scales an effort by the joint's gain and clamps it to the effort limit. The caller
-    applies its ramps. `step` then limits the change since the last command, clamps once more,
-    and finally checks that every value is finite. The ramps come before the rate limit, so that
-    the rate limit holds for the published commands.
+    `target` scales an effort by the joint's gain, adds the joint's offset and clamps the sum to
+    the effort limit. The caller applies its ramps. `step` then limits the change since the last
+    command, clamps once more, and finally checks that every value is finite. The ramps come before
+    the rate limit, so that the rate limit holds for the published commands.
 
     Attributes
     ----------
@@ -42,6 +42,7 @@ class EffortLimiter:
         rate_limits: ArrayLike,
         scale: ArrayLike,
         names: Sequence[str] = (),
+        offset: ArrayLike | None = None,
     ) -> None:
         """
         Start with a last command of zero.
@@ -56,6 +57,8 @@ class EffortLimiter:
             Gain on the model's effort.
         names : sequence of str, optional
             Names of the m joints, for messages.
+        offset : array_like, shape (m,), optional
+            Bias that is added to the scaled effort, N m or N; by default zero.
 
         """
         # Lists instead of arrays: for the few joints of a robot, plain numbers are several times
@@ -64,6 +67,9 @@ class EffortLimiter:
         self._rate_limits: list[float] = np.array(rate_limits, dtype=float).tolist()
         self._scale: list[float] = np.array(scale, dtype=float).tolist()
         m = len(self._limits)
+        self._offset: list[float] = (
+            [0.0] * m if offset is None else np.array(offset, dtype=float).tolist()
+        )
         self.names = tuple(names) or tuple(f'joint {i}' for i in range(m))
         self._last: list[float] = [0.0] * m
         self._before = self._last
@@ -107,7 +113,7 @@ class EffortLimiter:
 
     def target(self, effort: NDArray[np.float64]) -> list[float]:
         """
-        Return a model effort scaled and clamped.
+        Return a model effort scaled, with the offset, and clamped.
 
         Parameters
         ----------
@@ -131,10 +137,10 @@ class EffortLimiter:
             )
         self.is_saturated = False
         target = []
-        for i, (value, scale, limit) in enumerate(
-            zip(effort.tolist(), self._scale, self._limits, strict=True)
+        for i, (value, scale, offset, limit) in enumerate(
+            zip(effort.tolist(), self._scale, self._offset, self._limits, strict=True)
         ):
-            self._wanted[i] = value = value * scale
+            self._wanted[i] = value = value * scale + offset
             if not abs(value) <= limit:
                 if abs(value) > limit:
                     self.is_saturated = True

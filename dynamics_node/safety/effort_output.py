@@ -159,7 +159,7 @@ class EffortOutput:
 
     def blend(self, now: float, difference: NDArray[np.float64]) -> None:
         """
-        Spread a change of model, gains or limits over the start ramp.
+        Spread a change of model, gains, offsets or limits over the start ramp.
 
         Parameters
         ----------

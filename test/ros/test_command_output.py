@@ -567,3 +567,25 @@ def test_a_change_while_active_is_blended_over_the_start_ramp(client, drive, pub
     # A pause of a busy machine counts as a fifth of this ramp at most.
     assert np.abs(np.diff(efforts)).max() <= (MAX_RAMP_STEP / 0.5 + 0.02) * HOLD
     assert np.sum((efforts > 0.05 * HOLD) & (efforts < 0.95 * HOLD)) >= 4
+
+
+def test_an_offset_is_part_of_the_command_and_fades_with_it(client, drive, publish):
+    offset = 0.25 * HOLD
+    drive(effort_scale='[0.5]', effort_offset=f'[{offset}]')
+    full = 0.5 * HOLD + offset
+    client.until(lambda: client.commands[-1][1] == [pytest.approx(full)], publish)
+    efforts = efforts_of(client)
+    # The start ramp fades it in: no step, and not one command that begins with it.
+    assert efforts[0] < 0.2 * full
+    assert np.abs(np.diff(efforts)).max() <= (MAX_RAMP_STEP / 0.5 + 0.02) * full
+    client.commands.clear()
+    assert client.set_node_parameter('effort_offset', [-offset], publish).successful
+    client.until(lambda: client.commands[-1][1] == [pytest.approx(full - 2 * offset)], publish)
+    efforts = efforts_of(client)
+    assert np.abs(np.diff(efforts)).max() <= (MAX_RAMP_STEP / 0.5 + 0.02) * 2 * offset + 1e-9
+    assert len(np.unique(efforts)) >= 4
+    client.commands.clear()
+    assert client.enable(False, publish).success
+    client.until(client.output_is('READY'), publish)
+    client.during(0.3, publish)
+    assert_ramped_to_zero(efforts_of(client))

@@ -53,6 +53,8 @@ SCALED = {'effort_scale': [4.0] * N}
         ({'gravity': (0.0,) * 3}, {'gravity': (0.0,) * 3}),
         ({}, {'effort_scale': [1.1] * N}),
         (SCALED, {}),
+        ({}, {'effort_offset': [0.1] * N}),
+        ({'effort_offset': [100.0] * N}, {}),
     ],
     ids=str,
 )
@@ -77,6 +79,7 @@ def test_a_change_within_the_limits_is_accepted(before, after):
             'above the limit: shoulder_pitch: 109',
         ),
         ({}, SCALED, 'above the limit: shoulder_pitch'),
+        ({}, {'effort_offset': [100.0] + [0.0] * (N - 1)}, 'above the limit: shoulder_yaw: 100'),
         ({}, {'gravity': (0.0, 0.0, 9.81)}, 'points up .* set allow_upward_gravity'),
         (
             {'allow_upward_gravity': True},

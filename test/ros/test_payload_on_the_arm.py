@@ -130,6 +130,7 @@ def test_a_change_beyond_the_limits_is_refused_while_the_output_is_on(floating):
     # Not in two steps either: first zero, then upwards.
     assert 'not zero while output is on' in refusal(client, 'gravity', [0.0, 0.0, 0.0])
     assert 'above the limit: shoulder_pitch' in refusal(client, 'effort_scale', [10.0] * 8)
+    assert 'above the limit: shoulder_yaw' in refusal(client, 'effort_offset', [95.0] * 8)
     assert_held(rig, 0.5)
     assert client.output == 'ACTIVE', rig.explain()
     # With the output off it is accepted, and the answer names the joints above their limits.

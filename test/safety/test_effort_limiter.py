@@ -10,8 +10,8 @@ LIMITS, RATES = np.array([10.0, 2.0]), np.array([100.0, 5.0])
 any_float = st.floats(allow_nan=True, allow_infinity=True)
 
 
-def limiter(scale=(1.0, 1.0)):
-    return EffortLimiter(LIMITS, RATES, np.array(scale))
+def limiter(scale=(1.0, 1.0), offset=(0.0, 0.0)):
+    return EffortLimiter(LIMITS, RATES, np.array(scale), offset=np.array(offset))
 
 
 def command(unit, effort, ramp, dt):
@@ -25,7 +25,7 @@ def command(unit, effort, ramp, dt):
     )
 )
 def test_no_sequence_of_efforts_exceeds_the_limits(sequence):
-    unit = limiter((1.5, 0.5))
+    unit = limiter((1.5, 0.5), (-1.0, 5.0))
     last = np.zeros(2)
     for effort, ramp, dt in sequence:
         try:
@@ -55,6 +55,14 @@ def test_scale_comes_before_the_clamp_and_the_ramp_after_it():
     assert not unit.is_saturated
     assert unit.saturations == [1, 0]
     assert unit.saturation() == ''
+
+
+def test_the_offset_comes_after_the_scale_and_before_the_clamp_and_the_ramp():
+    unit = limiter((4.0, 0.0), (-1.0, 0.5))
+    np.testing.assert_array_equal(command(unit, [2.0, 1.0], 1.0, 1.0), [7.0, 0.5])
+    np.testing.assert_array_equal(command(unit, [5.0, 1.0], 0.5, 1.0), [5.0, 0.25])
+    assert unit.saturation() == 'joint 0: 19 limited to 10'
+    np.testing.assert_array_equal(command(unit, [-5.0, 1.0], 0.0, 1.0), [0.0, 0.0])
 
 
 def test_a_step_is_limited_by_the_time_since_the_last_command():

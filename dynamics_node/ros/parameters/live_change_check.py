@@ -36,7 +36,8 @@ def check_change(
     ------
     ParameterError
         If a chosen joint would have no effort limit, a limit would be above the URDF's, gravity
-        would point up or turn too fast, or gravity torque would bring another joint to its limit.
+        would point up or turn too fast, or gravity torque, scaled and with the offset, would bring
+        another joint to its limit.
 
     """
     unlimited = robot.unlimited_joints(values['effort_limits'])
@@ -53,7 +54,9 @@ def check_change(
         )
     if values['gravity'] != before['gravity']:
         _check_gravity(values, gravity_change, now)
-    if model is robot.model and values['effort_scale'] == before['effort_scale']:
+    if model is robot.model and all(
+        values[name] == before[name] for name in ('effort_scale', 'effort_offset')
+    ):
         return  # lower limits are always accepted
     over = robot.over_limits(values, model, before)
     if over:

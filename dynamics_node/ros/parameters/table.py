@@ -133,8 +133,8 @@ PARAMETERS = (
         'start_ramp',
         DOUBLE,
         0.5,
-        'Time from zero to the full effort, s. A change of payload, gravity, terms, gains or '
-        'limits while efforts are sent takes as long',
+        'Time from zero to the full effort, s. A change of payload, gravity, terms, gains, '
+        'offsets or limits while efforts are sent takes as long',
         low=0.0,
         high=60.0,
     ),
@@ -186,6 +186,16 @@ PARAMETERS = (
         'Gain on the model effort per joint. Empty: 1',
         low=0.0,
         high=10.0,
+        per_joint=True,
+    ),
+    Parameter(
+        'effort_offset',
+        DOUBLES,
+        (),
+        'Calibrated bias per joint, N m or N: added to the model effort after effort_scale and '
+        'before the limits. Empty: 0',
+        low=-1e6,
+        high=1e6,
         per_joint=True,
     ),
     Parameter(

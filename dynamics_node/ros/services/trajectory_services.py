@@ -129,12 +129,15 @@ class TrajectoryServices(RobotServices):
         return _read_motion(robot, trajectory, self.parameters['state_timeout'])
 
     def _limits_before_gains(self, robot):
-        # The limits apply after effort_scale; a joint with gain 0 gets no effort, and no limit.
-        gains = np.ones(len(robot.model.joint_names))
+        # The limits apply after effort_scale and effort_offset; a joint with gain 0 gets no model
+        # effort, and no limit. The offset counts against both directions: the answer has one
+        # limit per joint.
+        count = len(robot.model.joint_names)
+        gains, offsets = np.ones(count), np.zeros(count)
         gains[robot.selection.index] = self.parameters['effort_scale'] or 1.0
-        return np.divide(
-            self._limits(robot), gains, where=gains > 0.0, out=np.full(len(gains), np.nan)
-        )
+        offsets[robot.selection.index] = self.parameters['effort_offset'] or 0.0
+        left = np.maximum(self._limits(robot) - np.abs(offsets), 0.0)
+        return np.divide(left, gains, where=gains > 0.0, out=np.full(count, np.nan))
 
     def _limits(self, robot):
         # Of all joints: the joints outside `joints` have limits too.

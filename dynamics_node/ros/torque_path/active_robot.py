@@ -332,28 +332,27 @@ class ActiveRobot:
         Returns
         -------
         str
-            Joint, gravity torque and limit each; '' if there is none, or no state. A torque
-            that is not finite is above every limit.
+            Joint, gravity torque (scaled and with the offset) and limit each; '' if there is
+            none, or no state. A torque that is not finite is above every limit.
 
         """
         if not self.buffer.is_complete:
             return ''
-        G = self._scaled_gravity_torque(model or self.model, values)
+        G = self._holding_effort(model or self.model, values)
         limits = self.effort_limits(values['effort_limits'])
         is_over = (np.abs(G) > limits) | ~np.isfinite(G)
         if before is not None:
-            was = self._scaled_gravity_torque(self.model, before)
+            was = self._holding_effort(self.model, before)
             is_over &= ~((np.abs(was) > limits) & (np.sign(was) == np.sign(G)))
         return '; '.join(
             f'{self.joint_names[i]}: {G[i]:.6g}, limit {limits[i]:.6g}'
             for i in np.flatnonzero(is_over)
         )
 
-    def _scaled_gravity_torque(
-        self, model: RobotModel, values: Mapping[str, Any]
-    ) -> NDArray[np.float64]:
+    def _holding_effort(self, model: RobotModel, values: Mapping[str, Any]) -> NDArray[np.float64]:
+        # As the limiter receives it: G with gain and offset.
         G = model.gravity_torque(self.buffer.position)[self.selection.index]
-        return G * (values['effort_scale'] or 1.0)
+        return G * (values['effort_scale'] or 1.0) + (values['effort_offset'] or 0.0)
 
     def unlimited_joints(self, given: Sequence[float]) -> list[str]:
         """
