@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from rclpy.parameter import Parameter
 from std_msgs.msg import Float64MultiArray
+from support.processes import ANSWER
 from support.robots import HOLD, PENDULUM
 
 JOINTS = ('shoulder', 'elbow')
@@ -39,23 +40,31 @@ class Watched:
     def __init__(self, client, others, deaf=()):
         self.client, self.others = client, others
         self.unit = Controllers(client.node, '/efforts')
-        names = {f'/{other.node.get_name()}' for other in (*others, *deaf)}
-        answering = {f'/{other.node.get_name()}' for other in others}
-        self.until(
-            lambda: (
-                names == set(self.unit.listeners)
-                and all(self.unit.listeners[name].has_answered for name in answering)
-            )
+        names, answering = (
+            {f'/{other.node.get_name()}' for other in group}
+            for group in ((*others, *deaf), others)
         )
+        self.until(lambda: names == set(self.unit.listeners))
+
+        def have_answered():
+            return all(self.unit.listeners[name].has_answered for name in answering)
+
+        try:
+            self.until(have_answered, timeout=ANSWER)
+        except AssertionError:  # a request in the moment before both ends are matched is lost
+            self.unit.ask_again()
+            self.until(have_answered)
 
     def spin(self):
         for other in self.others:
             other.executor.spin_once(timeout_sec=0.0)
 
-    def until(self, condition, action=lambda: None):
+    def until(self, condition, action=lambda: None, **options):
         """Update until a condition holds; return its value."""
         return self.client.until(
-            lambda: (self.unit.update(), condition())[1], lambda: (action(), self.spin())
+            lambda: (self.unit.update(), condition())[1],
+            lambda: (action(), self.spin()),
+            **options,
         )
 
 
