@@ -88,20 +88,28 @@ def _starting(kind):
 
 
 @pytest.fixture(scope='module')
-def shared():
-    """Return a client of a node with arm7, shared by the tests of a file that only query."""
-    from support.processes import Client, NodeProcess
+def shared_parameters():
+    """Return the parameters of the shared node; a module may override them."""
     from support.robots import ARM7
+
+    # A long timeout, for a busy machine.
+    return {'robot_description_file': ARM7, 'state_timeout': 1.0}
+
+
+@pytest.fixture(scope='module')
+def shared(shared_parameters):
+    """Return a client of a node, its `process`, that the tests of a file share."""
+    from support.processes import Client, NodeProcess
     from support.ros_domain import claim
 
     with contextlib.ExitStack() as stack:
         # In a separate domain: other tests start nodes of the same name.
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv('ROS_DOMAIN_ID', str(claim()))
-            # Long, for a busy machine.
-            node = NodeProcess(robot_description_file=ARM7, state_timeout=1.0)
+            node = NodeProcess(**shared_parameters)
             stack.callback(node.close)
             client = Client()
+        client.process = node
         stack.callback(client.close)
         yield client
 
@@ -137,7 +145,9 @@ def _group(file):
     """Return the group of a test file; None: each test starts its own processes, in any worker."""
     if file in _SHARE_RESULTS:
         return 'result_cache'
-    shares_a_node = file.endswith(('services.py', '_on_the_arm.py'))
+    shares_a_node = file.endswith(
+        ('services.py', '_on_the_arm.py', 'external_torque.py', 'test_node.py', 'output.py')
+    )
     return None if file.startswith('ros/') and not shares_a_node else file
 
 

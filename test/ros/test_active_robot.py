@@ -1,13 +1,26 @@
-"""The robot in force: limits, measured states and refusals."""
+"""The robot in force: limits, measured states, and the model that the parameters describe."""
 
 from dynamics_node import RobotModel
+from dynamics_node.errors import ParameterError
+from dynamics_node.ros.parameters.live_change_check import check_change
+from dynamics_node.ros.parameters.model_settings import configured
 from dynamics_node.ros.parameters.table import check_all
 from dynamics_node.ros.torque_path.active_robot import ActiveRobot, StateUnavailableError
+from dynamics_node.safety import GravityChange
 import numpy as np
 import pytest
 from support.robots import ARM7, PENDULUM
 
 TEXT = PENDULUM.read_text()
+ARM = RobotModel.from_urdf(ARM7)
+CHOSEN = tuple(ARM.joint_names[i] for i in (3, 1))
+QD = np.linspace(2.0, -3.0, 8)
+PAYLOAD = {'payload.link': 'hand', 'payload.mass': 2.0}
+OTHERS = [0, 2, 4, 5, 6, 7]
+NO_LIMIT = PENDULUM.read_text().replace('effort="20"', '')
+N = 8
+DOWN = (0.0, 0.0, -9.81)
+Q = [0.02, 0.8, 0.02, 0.8, 0.02, 0.02, 0.02, 0.01]
 
 
 def test_a_mass_matrix_that_is_not_positive_definite_is_noticed():
@@ -62,3 +75,129 @@ def test_a_torque_that_is_not_finite_is_above_every_limit():
     heavy = robot.model.with_payload('hand', 1e308, (0.0, 0.0, 0.06))
     for before in (None, values):
         assert 'shoulder_pitch: nan, limit 90' in robot.over_limits(values, heavy, before)
+
+
+# Parameters of the model -----------------------------------------------------------------------
+
+
+def model_with(values):
+    """Return the model of an arm with some parameters."""
+    return configured(ActiveRobot(ARM, CHOSEN), check_all(values))
+
+
+def test_the_defaults_are_the_robot_of_the_urdf():
+    model = model_with({})
+    assert np.array_equal(model.mass_matrix(Q), ARM.mass_matrix(Q))
+    assert np.array_equal(model.friction_torque(QD), ARM.friction_torque(QD))
+    assert model.payload is None
+
+
+@pytest.mark.parametrize('name', ['viscous', 'coulomb', 'smoothing_velocity'])
+def test_friction_changes_for_the_chosen_joints_only(name):
+    changed = getattr(model_with({f'friction.{name}': [0.7, 0.2]}).friction, name)
+    before = getattr(ARM.friction, name)
+    assert changed[[3, 1]].tolist() == [0.7, 0.2]
+    assert changed[OTHERS].tolist() == before[OTHERS].tolist()
+    assert changed.tolist() != before.tolist()
+
+
+def test_only_differences_are_applied():
+    robot, before = ActiveRobot(ARM, ()), check_all(PAYLOAD)
+    robot.configure(before)
+    loaded = robot.model
+    robot.configure({**before, 'state_timeout': 0.5}, before)
+    assert robot.model is loaded
+    robot.configure(check_all({}), before)
+    assert robot.model.payload is None
+    assert np.array_equal(robot.model.gravity_torque(Q), ARM.gravity_torque(Q))
+
+
+# Changes while the output is on ----------------------------------------------------------------
+
+
+def payload(mass, link='hand', com=(0.03, 0.0, 0.0)):
+    """Return the parameters of a payload."""
+    return {'payload.link': link, 'payload.mass': mass, 'payload.com': com}
+
+
+def change(before, after, urdf=ARM7):
+    """Check a change between two sets of parameters, each given by its differences to default."""
+    robot = ActiveRobot(RobotModel.from_urdf(urdf), ())
+    before = check_all(before)
+    robot.configure(before)
+    robot.buffer.update(0.0, list(robot.joint_names), Q[: len(robot.joint_names)])
+    values = check_all(after)
+    gravity = GravityChange()
+    gravity.begin(0.0, before['gravity'])
+    check_change(robot, configured(robot, values, before), values, before, gravity, 0.0)
+
+
+LIMITS = {'effort_limits': [1.0] * N}
+SCALED = {'effort_scale': [4.0] * N}
+
+
+@pytest.mark.parametrize(
+    'before, after',
+    [
+        ({}, payload(1.0)),
+        (payload(1.0), {}),
+        ({}, LIMITS),
+        (payload(1.0), LIMITS | payload(1.0)),
+        # A joint at its limit: the efforts still follow a tilting base, and less load.
+        (payload(500.0), payload(499.0)),
+        (payload(500.0), {}),
+        (payload(500.0), payload(501.0)),
+        ({}, {'gravity': (4.0, 0.0, -9.0)}),
+        ({'gravity': (0.0,) * 3}, {'gravity': (0.0,) * 3}),
+        ({}, {'effort_scale': [1.1] * N}),
+        (SCALED, {}),
+        ({}, {'effort_offset': [0.1] * N}),
+        ({'effort_offset': [100.0] * N}, {}),
+    ],
+    ids=str,
+)
+def test_a_change_within_the_limits_is_accepted(before, after):
+    change(before, after)
+
+
+@pytest.mark.parametrize(
+    'before, after, message',
+    [
+        ({}, payload(500.0), 'above the limit: shoulder_pitch'),
+        # Another joint at its limit does not permit it.
+        (
+            {'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2},
+            {'effort_limits': [90.0] * 5 + [1e-3] + [90.0] * 2} | payload(500.0),
+            'shoulder_pitch',
+        ),
+        # A reversal at the limit: the effort would go from one limit to the other.
+        (
+            payload(500.0),
+            payload(500.0, com=(0.0, 0.0, -3.0)),
+            'above the limit: shoulder_pitch: 109',
+        ),
+        ({}, SCALED, 'above the limit: shoulder_pitch'),
+        ({}, {'effort_offset': [100.0] + [0.0] * (N - 1)}, 'above the limit: shoulder_yaw: 100'),
+        ({}, {'gravity': (0.0, 0.0, 9.81)}, 'points up .* set allow_upward_gravity'),
+        (
+            {'allow_upward_gravity': True},
+            {'allow_upward_gravity': True, 'gravity': (0.0, 0.0, 9.81)},
+            'at most 30 degrees at once',
+        ),
+        ({}, {'effort_limits': [91.0] * N}, 'effort_limits of shoulder_yaw: 91, in the URDF 90'),
+        ({}, {'gravity': (9.81, 0.0, 0.0)}, 'at most 30 degrees at once'),
+        ({}, {'gravity': (0.0, 0.0, -15.0)}, 'at most 2 m/s'),
+        ({}, {'gravity': (0.0, 0.0, 0.0)}, 'not zero while output is on'),
+        ({'gravity': (0.0,) * 3}, {'gravity': DOWN}, 'not zero while output is on'),
+    ],
+    ids=str,
+)
+def test_a_change_that_would_throw_or_drop_the_arm_is_refused(before, after, message):
+    with pytest.raises(ParameterError, match=message):
+        change(before, after)
+
+
+def test_a_joint_cannot_lose_its_limit():
+    change({'effort_limits': [5.0]}, {'effort_limits': [4.0]}, NO_LIMIT)
+    with pytest.raises(ParameterError, match='got none for hinge'):
+        change({'effort_limits': [5.0]}, {}, NO_LIMIT)

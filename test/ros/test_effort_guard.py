@@ -1,6 +1,6 @@
 """The effort guard over DDS, in a process of its own: node, guard and controller."""
 
-import itertools
+import functools
 import signal
 import subprocess
 import sys
@@ -15,10 +15,10 @@ from dynamics_node.safety.effort_guard import LONGEST_STEP
 import numpy as np
 import pytest
 from rcl_interfaces.srv import GetParameters, SetParameters
-import rclpy
 from rclpy.parameter import Parameter
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension
 from std_srvs.srv import Trigger
+from support.controller import Controller
 from support.processes import Client
 from support.robots import PENDULUM
 
@@ -28,7 +28,8 @@ MODULE = 'dynamics_node.ros.effort_guard.main'
 TIMEOUT, RAMP = 0.5, 0.4
 # What a busy machine may be late, s.
 LATE = 3.0
-FULL = (20.0, -4.0)
+FULL, ZERO = (20.0, -4.0), (0.0, 0.0)
+LARGEST_STEP = FULL[0] * LONGEST_STEP / RAMP + 1e-9
 
 
 class Bench(Client):
@@ -37,40 +38,24 @@ class Bench(Client):
     def __init__(self, is_source=True):
         super().__init__()
         if is_source:
-            self.command = self.node.create_publisher(Float64MultiArray, INPUT, 1)
+            self.source = self.node.create_publisher(Float64MultiArray, INPUT, 1)
         self.guard_states = self.listen(OutputState, '/effort_guard/state', latched=True)
-        self.received = []
-        self._controllers = []
+        self.received = []  # by the controllers: (time, efforts)
 
-    def add_controller(self, name='forward_effort_controller', topic=OUTPUT, **parameters):
-        """Begin to listen as an effort controller does; `received` has time and efforts."""
-        controller = rclpy.create_node(name, context=self.context)
-        for key, value in parameters.items():
-            controller.declare_parameter(key, value)
-        controller.create_subscription(
-            Float64MultiArray,
-            topic,
-            lambda message: self.received.append((time.monotonic(), list(message.data))),
-            1000,
-        )
-        self.executor.add_node(controller)
-        self._controllers.append(controller)
+    def add_controller(self, *arguments, **parameters):
+        """Start an effort controller."""
+        controller = Controller(self, *arguments, **parameters)
+        controller.received = self.received
         return controller
 
-    def remove(self, controller):
-        """Let a controller end."""
-        self.executor.remove_node(controller)
-        self._controllers.remove(controller)
-        controller.destroy_node()
-
     def send(self, efforts=FULL):
-        self.command.publish(Float64MultiArray(data=[float(effort) for effort in efforts]))
+        self.source.publish(Float64MultiArray(data=[float(effort) for effort in efforts]))
 
     def until_connected(self):
         """Wait until source, guard and controller have found each other, and nothing moves."""
-        # Zeros start nothing, and show the way.
-        self.until(lambda: self.received, lambda: self.send((0.0, 0.0)))
-        self.until(self.is_in('READY'))
+        # Zeros start no effort; their arrival shows the connection.
+        self.until(lambda: self.received, lambda: self.send(ZERO))
+        self.until_guard('READY')
 
     def start(self, efforts=FULL, ramp=0.2):
         """Send what the node sends when it is enabled, and go on until all of it arrives."""
@@ -82,22 +67,39 @@ class Bench(Client):
 
         self.until(lambda: self.last == list(efforts), send)
 
-    def is_in(self, name):
-        """Return a condition: the guard is in a state."""
-        return lambda: bool(self.guard_states) and self.guard_states[-1].name == name
+    def until_guard(self, name, action=None):
+        """Wait until the guard is in a state."""
+        self.until(lambda: self.guard == name, action)
+
+    def until_reason(self, *texts, action=None, **options):
+        """Wait until the reason of the guard contains one of some texts."""
+        self.until(lambda: any(text in self.guard_reason for text in texts), action, **options)
+
+    def joints(self, action=None):
+        """Return the joints of the controller, mirrored by the guard."""
+        request = GetParameters.Request(names=['joints'])
+        values = self.call(GetParameters, '/effort_guard/get_parameters', request, action).values
+        return list(values[0].string_array_value) if values else []
+
+    def fade(self, start=FULL):
+        """Return what was received since the last effort of the start."""
+        return [item for item in self.received if item[1] != list(start)]
+
+    def steps(self, begin):
+        """Return the steps of the first effort, from a beginning."""
+        return np.diff([begin, *(efforts[0] for _, efforts in self.received)])
 
     @property
     def last(self):
         return self.received[-1][1] if self.received else None
 
     @property
-    def reason(self):
-        return self.guard_states[-1].reason
+    def guard(self):
+        return self.guard_states[-1].name if self.guard_states else ''
 
-    def close(self):
-        for controller in list(self._controllers):
-            self.remove(controller)
-        super().close()
+    @property
+    def guard_reason(self):
+        return self.guard_states[-1].reason if self.guard_states else ''
 
 
 @pytest.fixture
@@ -121,7 +123,7 @@ def active(bench, guard):
 
 
 def assert_ramp(received, start, ramp=RAMP):
-    """The commands go from a start to zero in proportion, in steps, within the time."""
+    """Check that the commands go from a start to zero in proportion, in small steps, in time."""
     times, efforts = [time for time, _ in received], np.array([efforts for _, efforts in received])
     factors = efforts[:, 0] / start[0]
     assert efforts == pytest.approx(np.outer(factors, start))
@@ -131,16 +133,16 @@ def assert_ramp(received, start, ramp=RAMP):
     assert times[-1] - times[0] < ramp + LATE
 
 
-# Passing -------------------------------------------------------------------------------------
+# Commands that pass --------------------------------------------------------------------------
 
 
 def test_commands_pass_with_their_layout_and_nothing_is_sent_without_them(bench, guard):
     controller = bench.add_controller()
-    bench.until(bench.is_in('READY'))
+    bench.until_guard('READY')
     whole = []
-    controller.create_subscription(Float64MultiArray, OUTPUT, whole.append, 10)
+    controller.node.create_subscription(Float64MultiArray, OUTPUT, whole.append, 10)
     bench.until(
-        lambda: bench.command.get_subscription_count() and controller.count_publishers(OUTPUT)
+        lambda: bench.source.get_subscription_count() and controller.node.count_publishers(OUTPUT)
     )
     bench.during(0.3)
     assert bench.received == []
@@ -148,28 +150,23 @@ def test_commands_pass_with_their_layout_and_nothing_is_sent_without_them(bench,
     bench.start()
     message = Float64MultiArray(data=[1.0, 2.0])
     message.layout.dim.append(MultiArrayDimension(label='joints', size=2, stride=2))
-    bench.until(lambda: whole[-1] == message, lambda: bench.command.publish(message))
-    assert bench.is_in('ACTIVE')()
+    bench.until(lambda: whole[-1] == message, lambda: bench.source.publish(message))
+    assert bench.guard == 'ACTIVE'
 
 
 def test_silence_and_invalid_commands_end_in_a_fade(active):
     active.received.clear()
-    active.until(active.is_in('FAULT'), lambda: active.send((float('nan'), 0.0)))
-    active.until(lambda: active.last == [0.0, 0.0])
-    fade = [item for item in active.received if item[1] != list(FULL)]
-    assert_ramp(fade, FULL)
-    assert 'not finite' in active.reason
+    active.until_guard('FAULT', lambda: active.send((float('nan'), 0.0)))
+    active.until(lambda: active.last == list(ZERO))
+    assert_ramp(active.fade(), FULL)
+    assert 'not finite' in active.guard_reason
     # Commands that continue with the whole effort pass only after a reset.
     active.received.clear()
-    active.until(
-        lambda: 'too far from zero' in active.reason or 'under way' in active.reason, active.send
-    )
+    active.until_reason('too far from zero', 'under way', action=active.send)
     assert active.received == []
-    answer = active.call(Trigger, '/effort_guard/reset', action=active.send)
-    assert answer.success
+    assert active.call(Trigger, '/effort_guard/reset', action=active.send).success
     active.until(lambda: active.last == list(FULL), active.send)
-    efforts = [0.0] + [efforts[0] for _, efforts in active.received]
-    assert max(b - a for a, b in itertools.pairwise(efforts)) <= 20.0 * LONGEST_STEP / RAMP + 1e-9
+    assert max(active.steps(0.0)) <= LARGEST_STEP
 
 
 def test_a_guard_that_was_suspended_makes_no_step(active, guard):
@@ -179,13 +176,11 @@ def test_a_guard_that_was_suspended_makes_no_step(active, guard):
     active.received.clear()
     guard.send(signal.SIGCONT)
     active.until(lambda: active.last == list(other), lambda: active.send(other))
-    efforts = [20.0] + [efforts[0] for _, efforts in active.received]
-    steps = [b - a for a, b in itertools.pairwise(efforts)]
-    assert max(map(abs, steps)) <= 20.0 * LONGEST_STEP / RAMP + 1e-9
+    assert np.abs(active.steps(20.0)).max() <= LARGEST_STEP
     assert any('stood still' in state.reason for state in active.guard_states)
 
 
-# Its own end ---------------------------------------------------------------------------------
+# Signals -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -197,9 +192,9 @@ def test_a_signal_fades_and_ends_with_0(active, guard, number):
     guard.send(number)  # as launch does it
     active.until(lambda: guard.process.poll() is not None, active.send)
     assert guard.wait()[0] == 0
-    active.until(lambda: active.last == [0.0, 0.0])
-    assert_ramp([item for item in active.received if item[1] != list(FULL)], FULL)
-    assert active.is_in('READY')() and number.name in active.reason
+    active.until(lambda: active.last == list(ZERO))
+    assert_ramp(active.fade(), FULL)
+    assert active.guard == 'READY' and number.name in active.guard_reason
 
 
 def test_a_second_signal_is_faster(bench, start):
@@ -208,22 +203,15 @@ def test_a_second_signal_is_faster(bench, start):
     bench.until_connected()
     bench.start()
     guard.send(signal.SIGTERM)
-    bench.until(bench.is_in('STOPPING'), bench.send)
+    bench.until_guard('STOPPING', bench.send)
     bench.during(SAME_SIGNAL + 0.1, bench.send)
     assert bench.last[0] > 10.0
     bench.received.clear()
     guard.send(signal.SIGINT)
-    bench.until(lambda: bench.last == [0.0, 0.0], bench.send)
-    efforts = [efforts[0] for _, efforts in bench.received]
-    assert len(efforts) > 10
-    steps = [a - b for a, b in itertools.pairwise(efforts)]
+    bench.until(lambda: bench.last == list(ZERO), bench.send)
+    assert len(bench.received) > 10
+    steps = -np.diff([efforts[0] for _, efforts in bench.received])
     assert max(steps) > 1.2 * 20.0 * LONGEST_STEP / 2.5  # the first signal allows 2.5 s
-    assert guard.wait()[0] == 0
-
-
-def test_a_guard_without_effort_ends_at_once(bench, guard):
-    bench.until(bench.is_in('READY'))
-    guard.send(signal.SIGTERM)
     assert guard.wait()[0] == 0
 
 
@@ -239,76 +227,61 @@ def floating(guard, start):
     bench = Bench(is_source=False)
     bench.record_commands()
     bench.add_controller(joints=['hinge'], interface_name='effort')
-
-    def state():
-        bench.publish(['hinge'], [0.5], [0.0])
-
-    bench.until_heard(state)
-    bench.until(lambda: joints_of(bench, state), state)
-    bench.during(3 * TIMEOUT, state)  # commands right after the discovery of the node do not pass
-    answer = bench.enable(True, state)
-    assert answer.success, answer.message
-    bench.until(lambda: bench.output_is('ACTIVE')() and bench.is_in('ACTIVE')(), state)
-    bench.during(0.2, state)
+    bench.state = functools.partial(bench.publish, ['hinge'], [0.5], [0.0])
+    bench.until_heard(bench.state)
+    bench.until(lambda: bench.joints(bench.state), bench.state)
+    # Commands right after the discovery of the node do not pass.
+    bench.during(3 * TIMEOUT, bench.state)
+    bench.activate(bench.state)
+    bench.until_guard('ACTIVE', bench.state)
+    bench.during(0.2, bench.state)
     bench.full = bench.last
     assert abs(bench.full[0]) > 5.0
-    yield bench, node, state
+    bench.received.clear()
+    yield bench, node
     bench.close()
 
 
-def fade_after(bench, condition, action=None):
-    """Return what the controller receives until the guard is in FAULT and a condition holds."""
-    bench.received.clear()
-    bench.until(condition, action)
+def assert_fades(bench):
+    """Wait until the guard is in FAULT, and check the ramp to zero."""
+    bench.until_guard('FAULT', bench.state)
     bench.until(lambda: bench.last == [0.0])
-    return [item for item in bench.received if item[1] != bench.full]
+    assert_ramp(bench.fade(bench.full), bench.full)
 
 
 def test_the_death_of_the_node_ends_in_a_ramp(floating):
-    bench, node, state = floating
+    bench, node = floating
     node.process.kill()
     killed = time.monotonic()
-    fade = fade_after(bench, bench.is_in('FAULT'), state)
-    assert_ramp(fade, bench.full)
-    assert fade[-1][0] - killed < TIMEOUT + RAMP + LATE
-    assert 'no command for 0.5' in bench.reason
+    assert_fades(bench)
+    assert bench.received[-1][0] - killed < TIMEOUT + RAMP + LATE
+    assert 'no command for 0.5' in bench.guard_reason
 
 
 def test_a_node_that_hangs_ends_in_a_ramp_and_its_return_makes_no_step(floating):
-    bench, node, state = floating
+    bench, node = floating
     node.send(signal.SIGSTOP)
-    assert_ramp(fade_after(bench, bench.is_in('FAULT'), state), bench.full)
+    assert_fades(bench)
     bench.received.clear()
     node.send(signal.SIGCONT)
     # It stops by itself after its suspension, or on request; the guard is ready after that.
-    bench.until(lambda: bench.enable(False, state).success, state)
-    bench.until(bench.is_in('READY'), state)
+    bench.until(lambda: bench.enable(False, bench.state).success, bench.state)
+    bench.until_guard('READY', bench.state)
     assert not any(any(efforts) for _, efforts in bench.received)
     bench.received.clear()
-
-    def is_enabled():
-        return bench.enable(True, state).success
-
-    bench.until(is_enabled, state)
-    bench.until(lambda: bench.last == bench.full, state)
-    assert bench.is_in('ACTIVE')()
+    bench.until(lambda: bench.enable(True, bench.state).success, bench.state)
+    bench.until(lambda: bench.last == bench.full, bench.state)
+    assert bench.guard == 'ACTIVE'
     assert abs(bench.received[0][1][0]) < 0.5 * abs(bench.full[0])
 
 
 def test_the_node_sees_the_controller_behind_the_guard(bench, start):
     start(module=MODULE, output_topic='elbow_controller/commands')
     start(robot_description_file=PENDULUM, command_topic=INPUT, state_timeout=10.0)
-    bench.node.destroy_publisher(bench.command)  # which the node would refuse
-    bench.add_controller(
-        'elbow_controller',
-        '/elbow_controller/commands',
-        joints=['elbow'],
-        interface_name='position',
-    )
+    bench.node.destroy_publisher(bench.source)  # which the node would refuse
+    bench.add_controller('elbow_controller', joints=['elbow'], interface_name='position')
 
-    def state():
-        bench.publish(['hinge'], [0.5], [0.0])
-
+    state = functools.partial(bench.publish, ['hinge'], [0.5], [0.0])
     bench.until_heard(state)
 
     def is_refused_for_joints():
@@ -332,68 +305,57 @@ def test_the_node_sees_the_controller_behind_the_guard(bench, start):
 
 def test_controllers_that_contradict_each_other_are_both_named(bench, guard):
     bench.add_controller(joints=['a', 'b'])
-    other = bench.add_controller('other_controller', joints=['b', 'a'])
-    bench.until(
-        lambda: joints_of(bench) == ['/forward_effort_controller: a b', '/other_controller: b a']
-    )
-    bench.remove(other)
-    bench.until(lambda: joints_of(bench) == ['a', 'b'])
+    other = bench.add_controller('other_controller', OUTPUT, joints=['b', 'a'])
+    both = ['/forward_effort_controller: a b', '/other_controller: b a']
+    bench.until(lambda: bench.joints() == both)
+    other.close()
+    bench.until(lambda: bench.joints() == ['a', 'b'])
+    # A guard without effort ends at once.
+    bench.until_guard('READY')
+    assert guard.end(signal.SIGTERM)[0] == 0
 
 
-def joints_of(bench, action=None):
-    """Return the joints of the controller, mirrored by the guard."""
-    request = GetParameters.Request(names=['joints'])
-    values = bench.call(GetParameters, '/effort_guard/get_parameters', request, action).values
-    return list(values[0].string_array_value) if values else []
-
-
-# Others --------------------------------------------------------------------------------------
+# Conflicting publishers ----------------------------------------------------------------------
 
 
 def test_nothing_starts_without_a_listener_or_with_another_source(bench, guard):
-    bench.until(lambda: bench.command.get_subscription_count())
+    bench.until(lambda: bench.source.get_subscription_count())
     bench.during(3 * TIMEOUT)
-    bench.until(
-        lambda: (
-            'nothing listens on /forward_effort_controller' in bench.reason
-            if bench.guard_states
-            else False
-        ),
-        bench.send,
-    )
-    assert bench.is_in('FAULT')()
-    rival = bench.node.create_publisher(Float64MultiArray, OUTPUT, 1)
+    bench.until_reason('nothing listens on /forward_effort_controller', action=bench.send)
+    assert bench.guard == 'FAULT'
+    conflicting = bench.node.create_publisher(Float64MultiArray, OUTPUT, 1)
     bench.add_controller()
     bench.until_connected()
-    bench.until(lambda: f'1 other publisher(s) on {OUTPUT} (/test_client)' in bench.reason)
+    bench.until_reason(f'1 other publisher(s) on {OUTPUT} (/test_client)')
     bench.received.clear()
-    bench.until(bench.is_in('FAULT'), bench.send)
+    bench.until_guard('FAULT', bench.send)
     assert bench.received == []
-    bench.node.destroy_publisher(rival)
+    bench.node.destroy_publisher(conflicting)
     bench.until_connected()
-    bench.until(lambda: 'other publisher' not in bench.reason)
+    bench.until(lambda: 'other publisher' not in bench.guard_reason)
     bench.start()
 
 
 def test_a_second_source_and_slow_commands_are_reported(active):
     health = active.listen(DiagnosticArray, '/diagnostics')
     second = active.node.create_publisher(Float64MultiArray, INPUT, 1)
-    active.until(lambda: f'2 publishers on {INPUT} (/test_client)' in active.reason, active.send)
+    active.until_reason(f'2 publishers on {INPUT} (/test_client)', action=active.send)
     active.node.destroy_publisher(second)
-    active.until(lambda: 'commands come too slowly' in active.reason, active.send, period=0.2)
-    assert active.is_in('ACTIVE')() or active.is_in('STARTING')()
+    active.until_reason('commands come too slowly', action=active.send, period=0.2)
+    assert active.guard in ('ACTIVE', 'STARTING')
     active.until(
         lambda: any(
-            'slow period [s]' in {value.key for value in status.values}
+            value.key == 'slow period [s]'
             for message in health
             for status in message.status
+            for value in status.values
         ),
         active.send,
         period=0.2,
     )
 
 
-# Parameters, and what it is made of ----------------------------------------------------------
+# Parameters and imports ----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """The reasons against enabling, and events during the query of the controllers."""
 
-from pathlib import Path
 import time
 from types import SimpleNamespace
 
@@ -15,8 +14,6 @@ from dynamics_node.safety import OutputSettings, TorquePath
 import pytest
 from std_srvs.srv import SetBool
 from support.robots import PENDULUM
-
-HEAVY_AT = 0.0  # level: 10.3 N m, at a limit of 20
 
 
 class Output:
@@ -81,6 +78,13 @@ class Parts(SimpleNamespace):
             self.robot.motion_limits(()),
         )
 
+    def use_text(self, old, new, joints=()):
+        """Use a changed pendulum, and its state."""
+        text = PENDULUM.read_text()
+        assert old in text
+        self.use(RobotModel.from_urdf(text.replace(old, new)), joints)
+        self.fresh()
+
     def set(self, **changes):
         self.parameters.values = check_all(
             {
@@ -89,12 +93,10 @@ class Parts(SimpleNamespace):
             }
         )
 
-    def fresh(self, position=HEAVY_AT, **message):
+    def fresh(self, velocities=(0.0,), **message):
+        # Level: the gravity torque is 10.3 N m, at a limit of 20.
         self.robot.buffer.update(
-            time.monotonic(),
-            list(self.robot.joint_names),
-            [position] * len(self.robot.joint_names),
-            **message,
+            time.monotonic(), list(self.robot.joint_names), [0.0], velocities=velocities, **message
         )
 
     def begin(self):
@@ -103,12 +105,16 @@ class Parts(SimpleNamespace):
         self.client.during(0.1)
         return task
 
+    def answer(self, task):
+        """Have the controllers answer; return the result of a task."""
+        self.controllers.waits = False
+        self.client.until(task.done)
+        return task.result()
+
     def enable(self):
         """Ask for the output with controllers that answer at once; return the answer."""
         self.controllers.waits = False
-        task = self.begin()
-        self.client.until(task.done)
-        return task.result()
+        return self.answer(self.begin())
 
 
 @pytest.fixture
@@ -141,7 +147,7 @@ def parts(client):
         parts.controllers,
         SimpleNamespace(offer_pending=lambda: None),
     )
-    parts.fresh(velocities=[0.0])
+    parts.fresh()
     return parts
 
 
@@ -150,27 +156,50 @@ def test_the_output_starts_when_the_controllers_have_answered(parts):
     assert parts.controllers.queries == 1
     assert not task.done()
     assert parts.output.path.state.name == 'READY'
-    parts.controllers.waits = False
-    parts.client.until(task.done)
-    success, message = task.result()
-    assert success, message
-    assert message == (
+    assert parts.answer(task) == (
+        True,
         'enabled: full effort in 0.5 s (start_ramp), on /efforts; release brakes '
-        'when ~/state is ACTIVE, not before'
+        'when ~/state is ACTIVE, not before',
     )
     assert parts.output.path.state.name == 'STARTING'
     assert parts.enable() == (True, 'already enabled: STARTING')
 
 
-def test_an_arm_that_cannot_hold_itself_here_is_refused_with_joint_torque_and_limit(parts):
-    parts.set(effort_limits=[4.0])
+@pytest.mark.parametrize(
+    'changes, reason, confirmation',
+    [
+        (
+            {'effort_limits': [4.0]},
+            'the arm cannot hold itself where it is, gravity torque is above the effort limit: '
+            'hinge: 10.3005, limit 4',
+            {'compensate__gravity': False},
+        ),
+        (
+            {'gravity': [0.0, 0.0, 9.81]},
+            'points up in the frame of',
+            {'allow_upward_gravity': True},
+        ),
+        (
+            {'effort_limits': [200.0]},
+            'effort_limits of hinge: 200, in the URDF 20: lower it, or set '
+            'allow_limits_above_urdf',
+            {'allow_limits_above_urdf': True},
+        ),
+        (
+            {'velocity_limits': [30.0]},
+            'velocity_limits of hinge: 30, in the URDF 20: lower it, or set '
+            'allow_limits_above_urdf',
+            {'allow_limits_above_urdf': True},
+        ),
+    ],
+    ids=['too heavy', 'upward gravity', 'effort limits', 'velocity limits'],
+)
+def test_dangerous_parameters_are_refused_until_confirmed(parts, changes, reason, confirmation):
+    parts.set(**changes)
     success, message = parts.enable()
     assert not success
-    assert (
-        'the arm cannot hold itself where it is, gravity torque is above the effort limit: '
-        'hinge: 10.3005, limit 4'
-    ) in message
-    parts.set(effort_limits=[4.0], compensate__gravity=False)
+    assert reason in message
+    parts.set(**confirmation)
     assert parts.enable()[0]
 
 
@@ -182,16 +211,11 @@ def test_an_arm_that_cannot_hold_itself_here_is_refused_with_joint_torque_and_li
     ],
 )
 def test_an_arm_that_compensates_itself_is_refused(parts, plugin, is_refused):
-    parts.use(
-        RobotModel.from_urdf(
-            PENDULUM.read_text().replace(
-                '</robot>',
-                '<ros2_control name="a" type="system"><hardware><plugin>'
-                f'{plugin}</plugin></hardware></ros2_control></robot>',
-            )
-        )
+    parts.use_text(
+        '</robot>',
+        f'<ros2_control name="a" type="system"><hardware><plugin>{plugin}</plugin></hardware>'
+        '</ros2_control></robot>',
     )
-    parts.fresh()
     success, message = parts.enable()
     assert success != is_refused
     if is_refused:
@@ -201,73 +225,47 @@ def test_an_arm_that_compensates_itself_is_refused(parts, plugin, is_refused):
         assert parts.enable()[0]
 
 
-def test_upward_gravity_needs_a_confirmation(parts):
-    parts.set(gravity=[0.0, 0.0, 9.81])
-    assert 'points up in the frame of' in parts.enable()[1]
-    parts.set(allow_upward_gravity=True)
-    assert parts.enable()[0]
+FLAP = (
+    '<link name="tool"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" '
+    'iyz="0" izz="1"/></inertial></link><joint name="flap" type="revolute"><parent link="rod"/>'
+    '<child link="tool"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="9" velocity="9"/>'
+    '</joint></robot>'
+)
 
 
 @pytest.mark.parametrize(
-    'changes, what',
+    'prepare, note',
     [
-        ({'effort_limits': [200.0]}, 'effort_limits of hinge: 200, in the URDF 20'),
-        ({'velocity_limits': [30.0]}, 'velocity_limits of hinge: 30, in the URDF 20'),
-    ],
-)
-def test_limits_above_those_of_the_urdf_need_a_confirmation(parts, changes, what):
-    parts.set(**changes)
-    success, message = parts.enable()
-    assert not success
-    assert f'{what}: lower it, or set allow_limits_above_urdf' in message
-    parts.set(allow_limits_above_urdf=True)
-    assert parts.enable()[0]
-
-
-def test_joints_without_a_velocity_limit_are_named(parts):
-    parts.use(RobotModel.from_urdf(PENDULUM.read_text().replace('velocity="20"', '')))
-    parts.fresh(velocities=[0.0])
-    assert (
-        'jumps and runaway of hinge are not detected: the URDF has no velocity limit there; '
-        'set velocity_limits'
-    ) in parts.enable()[1]
-
-
-def test_missing_velocities_are_named(parts):
-    parts.fresh()
-    assert (
-        'joint_states have no velocity of hinge: a runaway is detected only' in (parts.enable()[1])
-    )
-
-
-def test_unmeasured_joints_that_are_not_chosen_are_named(parts):
-    text = PENDULUM.read_text().replace(
-        '</robot>',
         (
-            '<link name="tool"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" '
-            'iyy="1" iyz="0" izz="1"/></inertial></link><joint name="flap" type="revolute">'
-            '<parent link="rod"/><child link="tool"/><axis xyz="1 0 0"/>'
-            '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint></robot>'
+            lambda parts: parts.use_text('velocity="20"', ''),
+            'jumps and runaway of hinge are not detected: the URDF has no velocity limit there; '
+            'set velocity_limits',
         ),
-    )
-    if '"rod"' not in PENDULUM.read_text():
-        text = text.replace('"rod"', f'"{RobotModel.from_urdf(PENDULUM).tip_link}"')
-    parts.use(RobotModel.from_urdf(text), ['hinge'])
-    parts.fresh(velocities=[0.0])
-    assert 'taken where last measured, or neutral if never: flap' in parts.enable()[1]
-
-
-def test_an_effort_of_another_process_is_named(parts):
-    parts.fresh(velocities=[0.0], efforts=[-9.5])
-    assert (
-        'joint_states report efforts that this node has not sent (hinge: -9.5): if a '
-        'controller still holds them'
-    ) in parts.enable()[1]
-
-
-def test_a_newer_description_that_was_refused_is_named(parts):
-    parts.robot.refused_since = 'it is not XML'
-    assert 'a newer robot description was refused (it is not XML)' in parts.enable()[1]
+        (
+            lambda parts: parts.fresh(velocities=()),
+            'joint_states have no velocity of hinge: a runaway is detected only',
+        ),
+        (
+            lambda parts: parts.use_text('</robot>', FLAP, ['hinge']),
+            'taken where last measured, or neutral if never: flap',
+        ),
+        (
+            lambda parts: parts.fresh(efforts=[-9.5]),
+            'joint_states report efforts that this node has not sent (hinge: -9.5): if a '
+            'controller still holds them',
+        ),
+        (
+            lambda parts: setattr(parts.robot, 'refused_since', 'it is not XML'),
+            'a newer robot description was refused (it is not XML)',
+        ),
+    ],
+    ids=['velocity limit', 'velocity', 'unmeasured joint', 'effort', 'description'],
+)
+def test_what_the_node_cannot_check_is_named_in_the_answer(parts, prepare, note):
+    prepare(parts)
+    success, message = parts.enable()
+    assert success
+    assert note in message
 
 
 def test_every_reason_is_listed_at_once(parts):
@@ -290,19 +288,28 @@ def test_a_mass_matrix_that_is_not_positive_definite_is_refused(parts):
     assert parts.enable()[1].startswith('refused: the mass matrix is not positive definite')
 
 
-def test_a_mismatch_of_the_controllers_is_refused(parts):
+def test_a_mismatch_of_the_controllers_and_a_failing_query_are_refused(parts):
     parts.controllers.mismatches.append('another order')
     assert parts.enable() == (False, 'refused: another order')
+
+    def fail():
+        raise RuntimeError('no graph')
+
+    parts.controllers.update = fail
+    task = parts.client.executor.create_task(
+        parts.enabling._requested, SetBool.Request(data=True), SetBool.Response()
+    )
+    parts.client.until(task.done)
+    assert not task.result().success
+    assert task.result().message == 'internal error: no graph'
+    assert parts.output.errors == ['internal error in ~/enable: no graph']
     assert parts.output.path.state.name == 'READY'
 
 
 def test_a_robot_that_changes_during_the_query_is_refused(parts):
     task = parts.begin()
-    parts.use(RobotModel.from_urdf(Path(PENDULUM).read_text().replace('"hinge"', '"pivot"')))
-    parts.fresh()
-    parts.controllers.waits = False
-    parts.client.until(task.done)
-    assert task.result() == (
+    parts.use_text('"hinge"', '"pivot"')
+    assert parts.answer(task) == (
         False,
         ('refused: the robot description has changed while the controllers were asked: ask again'),
     )
@@ -322,33 +329,14 @@ def test_simultaneous_requests_get_one_answer_each(parts):
 def test_a_request_to_disable_cancels_the_enabling(parts):
     task = parts.begin()
     assert parts.enabling.disable() == (True, 'already off: READY')
-    parts.controllers.waits = False
-    parts.client.until(task.done)
-    assert task.result() == (False, 'disabled on request before it was enabled')
+    assert parts.answer(task) == (False, 'disabled on request before it was enabled')
     assert parts.output.path.state.name == 'READY'
 
 
 def test_enabling_is_refused_during_the_shutdown(parts):
     task = parts.begin()
     parts.output.path.close(time.monotonic(), 'SIGTERM', 2.5)
-    parts.controllers.waits = False
-    parts.client.until(task.done)
-    assert task.result() == (False, 'refused: the node is shutting down')
-
-
-def test_an_exception_in_the_query_is_answered_and_nothing_starts(parts):
-    def fail():
-        raise RuntimeError('no graph')
-
-    parts.controllers.update = fail
-    task = parts.client.executor.create_task(
-        parts.enabling._requested, SetBool.Request(data=True), SetBool.Response()
-    )
-    parts.client.until(task.done)
-    assert not task.result().success
-    assert task.result().message == 'internal error: no graph'
-    assert parts.output.errors == ['internal error in ~/enable: no graph']
-    assert parts.output.path.state.name == 'READY'
+    assert parts.answer(task) == (False, 'refused: the node is shutting down')
 
 
 def test_efforts_that_an_inactive_controller_may_hold_cannot_be_released(parts):

@@ -6,7 +6,7 @@ import time
 import types
 
 from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from dynamics_node import RobotModel
 from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.publishers.external_torque import ExternalTorque
@@ -15,24 +15,38 @@ from dynamics_node.safety import RejectedStateError
 import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
-from support.robots import ARM7, PENDULUM
+from support.processes import Diagnostics
+from support.robots import ARM7, HOLD, PENDULUM
 
 TOPIC = '/dynamics_node/external_torque'
 SWITCH = 'publish_external_torque'
 ARM = RobotModel.from_urdf(ARM7)
-WEIGHT = 0.5 * 3 * 0.7 * 9.81  # N m, of the pendulum at 0
+PART = 'external torque'  # of the diagnostics
+
+
+@pytest.fixture(scope='module')
+def shared_parameters():
+    return {
+        'robot_description_file': PENDULUM,
+        'publish_external_torque': 'true',
+        'state_timeout': 1.0,
+        'payload.link': 'rod',
+        'payload.com': '[0.3, 0.0, 0.0]',
+    }
 
 
 @pytest.fixture
-def pendulum(client, start):
-    """Return a function: start the node; return it, the received messages and its diagnostics."""
+def received(shared):
+    return shared.listen(JointState, TOPIC)
 
-    def start_pendulum(**parameters):
-        parameters.setdefault('publish_external_torque', 'true')
-        process = start(robot_description_file=PENDULUM, state_timeout=1.0, **parameters)
-        return process, client.listen(JointState, TOPIC), Health(client)
 
-    return start_pendulum
+@pytest.fixture
+def own(client, start):
+    """Return the process of an own node, its estimates and its diagnostics."""
+    process = start(
+        robot_description_file=PENDULUM, publish_external_torque='true', state_timeout=1.0
+    )
+    return process, client.listen(JointState, TOPIC), Diagnostics(client)
 
 
 def gravity_torque(robot):
@@ -40,53 +54,10 @@ def gravity_torque(robot):
     return robot.model.gravity_torque(robot.buffer.position)[robot.selection.index]
 
 
-class Health:
-    """The diagnostics of the external torque."""
-
-    def __init__(self, client):
-        self._received = client.listen(DiagnosticArray, '/diagnostics')
-
-    @property
-    def newest(self):
-        """The newest status, or None."""
-        found = [
-            status
-            for message in self._received[-1:]
-            for status in message.status
-            if status.name == 'dynamics_node: external torque'
-        ]
-        return found[0] if found else None
-
-    def says(self, text):
-        """Tell whether the newest status contains a text."""
-        return self.newest is not None and text in self.newest.message
-
-    def value(self, key):
-        """Return a number of the newest status, -1 if it is not there."""
-        values = self.newest.values if self.newest else ()
-        return int({item.key: item.value for item in values}.get(key, -1))
-
-
-def held(client, effort=WEIGHT, velocity=(0.0,)):
-    """Publish the pendulum at rest, with an effort or none."""
-    client.publish(['hinge'], [0.0], velocity, [] if effort is None else [effort])
-
-
-def set_parameter(client, name, value, action):
-    """Set a parameter of the node."""
-    result = client.set_node_parameter(name, value, action)
-    assert result.successful, result.reason
-
-
-def settle(client, received, expected, action):
-    """Wait for an estimate."""
-    client.until(lambda: newest(received) == pytest.approx(expected, rel=1e-3), action)
-
-
-def output_of(process):
-    """End the node; return its log."""
-    process.close()
-    return process.wait()[1]
+def held(client, effort=HOLD, velocity=(0.0,)):
+    """Return an action that publishes the pendulum at rest, with an effort or none."""
+    efforts = [] if effort is None else [effort]
+    return partial(client.publish, ['hinge'], [0.0], velocity, efforts)
 
 
 def newest(received):
@@ -94,116 +65,115 @@ def newest(received):
     return received[-1].effort[0] if received else math.nan
 
 
-def test_the_estimate_is_the_torque_that_the_motors_do_not_hold(client, pendulum):
-    _, received, health = pendulum()
-    action = partial(held, client, 0.6 * WEIGHT)
-    settle(client, received, 0.4 * WEIGHT, action)
+def settle(client, received, expected, action):
+    """Wait for an estimate."""
+    client.until(lambda: newest(received) == pytest.approx(expected, rel=1e-3), action)
+
+
+def test_the_estimate_is_the_torque_that_the_motors_do_not_hold(client, own):
+    _, received, diagnostics = own
+    action = held(client, 0.6 * HOLD)
+    settle(client, received, 0.4 * HOLD, action)
     message = received[-1]
     assert list(message.name) == ['hinge']
     assert list(message.position) == [0.0] and list(message.velocity) == [0.0]
     assert message.header.stamp.sec > 0
-    client.until(lambda: health.says('on'), action)
-    assert health.newest.level == DiagnosticStatus.OK
-    client.until(lambda: health.value('published') > 0, action)
+    client.until(lambda: 'on' in diagnostics.message(PART), action)
+    assert diagnostics.status(PART).level == DiagnosticStatus.OK
+    client.until(lambda: int(diagnostics.values(PART).get('published', 0)) > 0, action)
 
 
-def test_the_topic_is_switched_at_any_time(client, pendulum):
-    _, received, health = pendulum(publish_external_torque='false')
-    action = partial(held, client, 0.0)
-    client.until_heard(action)
-    client.until(lambda: client.node.count_publishers(TOPIC))
-    client.until(lambda: health.says('off'), action)
-    client.during(0.3, action)
-    assert received == []
-    set_parameter(client, SWITCH, True, action)
-    settle(client, received, WEIGHT, action)
-    set_parameter(client, SWITCH, False, action)
-    client.during(0.1, action)
+def test_the_topic_is_switched_at_any_time(shared, received, change):
+    action, diagnostics = held(shared, 0.0), Diagnostics(shared)
+    change(SWITCH, False, action)
+    shared.until(lambda: 'off' in diagnostics.message(PART), action)
+    shared.until(lambda: shared.node.count_publishers(TOPIC))
     received.clear()
-    client.during(0.3, action)
+    shared.during(0.3, action)
+    assert received == []
+    change(SWITCH, True, action)
+    settle(shared, received, HOLD, action)
+    change(SWITCH, False, action)
+    shared.during(0.1, action)
+    received.clear()
+    shared.during(0.3, action)
     assert received == []
     # The observation before does not count.
-    set_parameter(client, SWITCH, True, partial(held, client))
-    client.until(lambda: received, partial(held, client))
+    change(SWITCH, True, held(shared))
+    shared.until(lambda: received, held(shared))
     assert abs(received[0].effort[0]) < 1e-6
 
 
-def test_the_gain_sets_the_speed(client, pendulum):
-    _, received, _ = pendulum(**{'external_torque.gain': 0.5})
-    action = partial(held, client, 0.0)
-    client.until(lambda: len(received) > 20, action)
-    slow = received[-1].effort[0]
-    assert 0.0 < slow < 0.5 * WEIGHT
-    set_parameter(client, 'external_torque.gain', 200.0, action)
-    settle(client, received, WEIGHT, action)
+def test_the_gain_sets_the_speed(shared, received, change):
+    action = held(shared, 0.0)
+    change('external_torque.gain', 0.5, held(shared))
+    shared.until(lambda: abs(newest(received)) < 1e-6, held(shared))
+    received.clear()
+    shared.until(lambda: len(received) > 20, action)
+    assert 0.0 < newest(received) < 0.5 * HOLD
+    change('external_torque.gain', 200.0, action)
+    settle(shared, received, HOLD, action)
 
 
-@pytest.mark.parametrize(
-    'velocity, effort, text, to_do',
-    [
-        ((), WEIGHT, 'no velocity in joint_states of hinge', 'velocity state interface'),
-        ((0.0,), None, 'no effort in joint_states of hinge', 'effort state interface'),
-        ((0.0,), math.nan, 'no effort in joint_states of hinge', 'effort state interface'),
-    ],
-    ids=['no velocity', 'no effort', 'effort is NaN'],
-)
-def test_a_missing_input_is_reported_and_nothing_is_published(
-    client, pendulum, velocity, effort, text, to_do
-):
-    process, received, health = pendulum()
+def test_missing_inputs_are_reported_once_and_nothing_is_published(client, own):
+    process, received, diagnostics = own
     torques = client.listen(JointState, '/dynamics_node/gravity_torque')
-    action = partial(held, client, effort, velocity)
-    client.until(lambda: health.says(text), action)
-    assert health.newest.level == DiagnosticStatus.WARN
-    assert received == []
-    # ~/gravity_torque does not need it.
-    client.until(lambda: newest(torques) == pytest.approx(WEIGHT), action)
-    client.until(lambda: received, partial(held, client))
-    warnings = [
-        line for line in output_of(process).splitlines() if '~/external_torque is not' in line
+    cases = [
+        (held(client, HOLD, ()), 'no velocity in joint_states of hinge'),
+        (held(client, None), 'no effort in joint_states of hinge'),
+        (held(client, math.nan), 'no effort in joint_states of hinge'),
     ]
-    assert len(warnings) == 1
-    assert text in warnings[0] and to_do in warnings[0]
+    for action, text in cases:
+        client.until(lambda: text in diagnostics.message(PART), action)  # noqa: B023
+        assert diagnostics.status(PART).level == DiagnosticStatus.WARN
+        received.clear(), torques.clear()
+        # ~/gravity_torque does not need it.
+        client.until(lambda: newest(torques) == pytest.approx(HOLD), action)
+        assert received == []
+        client.until(lambda: received and diagnostics.message(PART) == 'on', held(client))
+    # Joint states at a too low rate.
+    too_slow = 'joint states come more than 0.1 s apart'
+    client.until(lambda: too_slow in diagnostics.message(PART), held(client), period=0.15)
+    assert diagnostics.status(PART).level == DiagnosticStatus.WARN
+    client.during(0.2)
+    received.clear()
+    client.during(0.5, held(client), period=0.15)
+    assert received == []
+    client.until(lambda: received and diagnostics.message(PART) == 'on', held(client))
+    output = process.end()[1]
+    for text, to_do in (
+        (cases[0][1], 'velocity state interface'),
+        (cases[1][1], 'effort state interface'),
+        (too_slow, 'raise the rate'),
+    ):
+        [warning] = [line for line in output.splitlines() if text in line]
+        assert '~/external_torque is not published' in warning and to_do in warning
 
 
 @pytest.mark.parametrize('name, value', [('gravity', [0.0, 0.0, -4.905]), ('payload.mass', 1.0)])
-def test_the_estimate_follows_a_change_of_the_model(client, pendulum, name, value):
-    _, received, health = pendulum(**{'payload.link': 'rod', 'payload.com': '[0.3, 0.0, 0.0]'})
-    action = partial(held, client, 0.0)
-    settle(client, received, WEIGHT, action)
-    client.until(lambda: health.says('on'), action)
-    set_parameter(client, name, value, action)
+def test_the_estimate_follows_a_change_of_the_model(shared, received, change, name, value):
+    action = held(shared, 0.0)
+    settle(shared, received, HOLD, action)
+    change(name, value, action)
     loaded = RobotModel.from_urdf(PENDULUM).with_payload('rod', 1.0, (0.3, 0.0, 0.0))
-    expected = 0.5 * WEIGHT if name == 'gravity' else loaded.gravity_torque([0.0])[0]
-    assert expected != pytest.approx(WEIGHT, rel=0.1)
-    settle(client, received, expected, action)
+    expected = 0.5 * HOLD if name == 'gravity' else loaded.gravity_torque([0.0])[0]
+    assert expected != pytest.approx(HOLD, rel=0.1)
+    settle(shared, received, expected, action)
 
 
-def test_a_too_low_rate_of_joint_states_is_reported(client, pendulum):
-    process, received, health = pendulum()
-
-    def publish_rarely():
-        held(client)
-        time.sleep(0.15)
-
-    client.until(lambda: health.says('joint states come more than 0.1 s apart'), publish_rarely)
-    assert health.newest.level == DiagnosticStatus.WARN
-    assert received == []
-    client.until(lambda: received and health.says('on'), partial(held, client))
-    expected = 'more than 0.1 s apart: ~/external_torque is not published; raise the rate'
-    assert expected in output_of(process)
-
-
-def test_partial_states_are_combined(client, start):
+def test_partial_states_are_combined_in_the_chosen_order(client, start):
     # Arm and gripper have a broadcaster each. Parts with different stamps are not one state.
+    n = len(ARM.joint_names)
+    order = [3, 1, *(i for i in range(n) if i not in (1, 3))]
+    chosen = [ARM.joint_names[i] for i in order]
     start(
         robot_description_file=ARM7,
         publish_external_torque='true',
         state_timeout=1.0,
         allow_several_state_publishers='true',
+        joints=f'[{", ".join(chosen)}]',
     )
     received = client.listen(JointState, TOPIC)
-    names, n = list(ARM.joint_names), len(ARM.joint_names)
     q = np.clip(np.full(n, 0.3), *ARM.position_limits.T)
     outside = np.linspace(1.0, -2.0, n)
     effort = ARM.gravity_torque(q) - outside
@@ -211,62 +181,41 @@ def test_partial_states_are_combined(client, start):
     def halves():
         stamp = client.node.get_clock().now().to_msg()
         for part in (slice(0, 5), slice(5, n)):
+            names = list(ARM.joint_names[part])
             message = JointState(
-                name=names[part],
+                name=names,
                 position=q[part].tolist(),
-                velocity=[0.0] * len(names[part]),
+                velocity=[0.0] * len(names),
                 effort=effort[part].tolist(),
             )
             message.header.stamp = stamp
             client.states.publish(message)
 
-    client.until(lambda: received and np.allclose(received[-1].effort, outside, atol=1e-3), halves)
+    client.until(
+        lambda: received and np.allclose(received[-1].effort, outside[order], atol=1e-3), halves
+    )
+    assert list(received[-1].name) == chosen
     stamps = {(message.header.stamp.sec, message.header.stamp.nanosec) for message in received}
     assert len(stamps) == len(received)
 
 
-def test_chosen_joints_come_in_the_chosen_order(client, start):
-    chosen = [ARM.joint_names[i] for i in (3, 1)]
-    start(
-        robot_description_file=ARM7,
-        joints=f'[{", ".join(chosen)}]',
-        state_timeout=1.0,
-        publish_external_torque='true',
-    )
-    received = client.listen(JointState, TOPIC)
-    q = ARM.neutral_position
-    q[[3, 1]] = -0.7, 0.5
-    expected = ARM.gravity_torque(q)[[3, 1]] - [1.0, 2.0]
-    client.until(
-        lambda: received and np.allclose(received[-1].effort, expected, atol=1e-3),
-        lambda: client.publish(chosen, [-0.7, 0.5], [0.0, 0.0], [1.0, 2.0]),
-    )
-    assert list(received[-1].name) == chosen
-
-
-def test_the_arrival_replaces_a_missing_stamp(client, pendulum):
-    _, received, _ = pendulum()
-
-    def publish():
-        client.states.publish(
-            JointState(name=['hinge'], position=[0.0], velocity=[0.0], effort=[0.0])
-        )
-
-    settle(client, received, WEIGHT, publish)
+def test_the_arrival_replaces_a_missing_stamp(shared, received):
+    state = JointState(name=['hinge'], position=[0.0], velocity=[0.0], effort=[0.0])
+    settle(shared, received, HOLD, lambda: shared.states.publish(state))
     assert abs(received[-1].header.stamp.sec - time.time()) < 60.0
     assert received[-1].header.stamp != Time()
 
 
-def test_implausible_efforts_are_reported(client, pendulum):
-    process, received, health = pendulum()
-    current = 0.1 * WEIGHT
-    client.until(lambda: health.says('hinge reports'), partial(held, client, current))
-    assert health.newest.level == DiagnosticStatus.WARN
-    assert f'hinge reports {current:.4g} at rest' in health.newest.message
-    assert f'{WEIGHT:.4g} holds it' in health.newest.message
+def test_implausible_efforts_are_reported(client, own):
+    process, received, diagnostics = own
+    current = 0.1 * HOLD
+    text = f'hinge reports {current:.4g} at rest'
+    client.until(lambda: text in diagnostics.message(PART), held(client, current))
+    assert diagnostics.status(PART).level == DiagnosticStatus.WARN
+    assert f'{HOLD:.4g} holds it' in diagnostics.message(PART)
     assert received  # published, too
-    client.until(lambda: health.says('on'), partial(held, client))
-    output = output_of(process)
+    client.until(lambda: diagnostics.message(PART) == 'on', held(client))
+    output = process.end()[1]
     assert 'can hardly be torque: hinge reports' in output and 'docs/arms.md' in output
 
 
@@ -355,10 +304,6 @@ def off_and_on(direct):
         assert direct.unit.configure() == value
 
 
-def unknown_effort(direct):
-    assert direct.state(0.05, effort=math.nan) == 0
-
-
 @pytest.mark.parametrize(
     'event, time, position',
     [
@@ -366,7 +311,7 @@ def unknown_effort(direct):
         (other_robot, 0.06, 0.0),
         (other_gain, 0.06, 0.0),
         (off_and_on, 0.06, 0.0),
-        (unknown_effort, 0.06, 0.0),
+        (lambda direct: direct.state(0.05, effort=math.nan), 0.06, 0.0),
         (lambda direct: None, 0.5, 0.0),
         (lambda direct: None, -9.0, 0.0),
     ],
@@ -379,12 +324,6 @@ def test_a_break_restarts_the_observer(direct, event, time, position):
     assert direct.state(time + 0.01, position) == 1
 
 
-def test_regular_states_never_restart_the_observer(direct):
-    for i in range(5, 50):
-        assert direct.state(0.01 * i) == 1
-    assert direct.begun == 1
-
-
 def test_gravity_that_changes_with_every_state_hides_no_push(direct):
     # A tilting base. The motors hold nothing: all of the weight is an external torque.
     for i in range(5, 60):
@@ -392,7 +331,7 @@ def test_gravity_that_changes_with_every_state_hides_no_push(direct):
         direct.robot.model = direct.robot.model.with_gravity((0.0, y, -9.81))
         assert direct.state(0.01 * i) == 1
     assert direct.begun == 1
-    assert direct.estimate == pytest.approx([WEIGHT], rel=1e-3)
+    assert direct.estimate == pytest.approx([HOLD], rel=1e-3)
 
 
 def test_parts_measured_at_different_times_are_one_complete_state(client):
@@ -427,13 +366,12 @@ def swing(time, model):
 def test_a_doubt_survives_a_restart(direct):
     for i in range(5, 220):
         direct.state(0.01 * i)  # an arm that reports zeros
+    assert direct.begun == 1  # regular states never restart it
     assert direct.is_doubted
-    other_gain(direct)
-    direct.state(2.2)
-    assert direct.is_doubted
-    other_robot(direct)  # with joints of the same names
-    direct.state(2.21)
-    assert direct.is_doubted
+    for begin, restart in ((2.2, other_gain), (2.21, other_robot)):  # of the same joint names
+        restart(direct)
+        direct.state(begin)
+        assert direct.is_doubted
 
 
 def test_an_unknown_effort_restarts_the_time_at_rest(direct):

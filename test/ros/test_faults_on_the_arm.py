@@ -6,17 +6,18 @@ One robot, one relay and, for equal parameters, one node serve all tests.
 """
 
 import bisect
+import contextlib
 import math
 import signal
 
 from dynamics_node.safety.effort_output import MAX_RAMP_STEP
 import numpy as np
 import pytest
-from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from soak.expected_sag import expected_sag
 from soak.rig import COMMAND_TOPIC, Rig
 from std_msgs.msg import Float64MultiArray
+from support.controller import Controller
 
 # Ramps shorter than by default, for short tests; a longer timeout, for a busy machine.
 TIMEOUT, START_RAMP, STOP_RAMP = 0.5, 0.2, 0.5
@@ -47,7 +48,7 @@ def rig(shared):
 
 
 def check_commands(rig):
-    """Every command was allowed for an arm."""
+    """Check that every command was within the limits of the arm."""
     rig.client.settle()
     assert rig.client.judge.violations == []
 
@@ -83,7 +84,7 @@ def assert_it_sank_by_the_ramp(rig):
 
 
 def check_fading(rig, begin):
-    """The commands of a stop never exceed what its ramp leaves, and end at zero."""
+    """Check that the commands of a stop stay below its ramp, and end at zero."""
     # The state comes on another topic, and may be here before the last command is.
     rig.until(lambda: not np.any(rig.client.commands[-1][1]))
     times, commands = zip(*rig.client.commands)
@@ -101,14 +102,14 @@ def check_fading(rig, begin):
 
 
 def assert_it_is_still_held(rig, since, fault=''):
-    """The arm has not moved more than a nearly correct message explains."""
+    """Check that the arm has moved no further than a nearly correct message explains."""
     _, position, velocity, _ = rig.client.truth_between(since, rig.client.now)
     assert rig.client.output == 'ACTIVE', f'{fault}: {rig.explain()}'
     assert np.abs(position - position[0]).max() < HELD, fault
     assert np.abs(velocity).max() < 0.5, fault
 
 
-# What does not stop it -----------------------------------------------------------------------
+# Harmless faults -----------------------------------------------------------------------------
 
 HARMLESS = {
     'permuted': None,
@@ -170,30 +171,33 @@ def test_a_short_freeze_of_the_relay_is_bridged(unhurried):
     assert_it_is_still_held(rig, begin)
 
 
-# What stops it -------------------------------------------------------------------------------
+# Faults that stop the output -----------------------------------------------------------------
 
 
-def test_silence_stops_the_output_by_the_ramp(rig):
-    rig.client.set_fault('silent')
-    assert 'joint_states stale: last ' in rig.until_fault()
+@pytest.mark.parametrize(
+    'fault, reason, is_immediate',
+    [
+        ('silent', 'joint_states stale: last ', False),
+        ('jump', '3 times in a row', True),
+        ('too_fast', 'runaway: shoulder_yaw at 50', True),
+    ],
+)
+def test_a_fault_of_the_joint_states_stops_the_output_by_the_ramp(
+    rig, fault, reason, is_immediate
+):
+    before = rig.client.now
+    rig.client.set_fault(fault)
+    assert reason in rig.until_fault()
+    if is_immediate:  # and not when the states are stale
+        assert newest_stop(rig)[0] - before < TIMEOUT
     assert_it_sank_by_the_ramp(rig)
 
 
 def test_only_fresh_states_keep_the_output_on(rig):
-    client = rig.client
-    faults = (
-        'frozen',
-        'bag_loop',
-        'half',
-        'all_nan',
-        'old_stamp',
-        'future_stamp',
-        'name_twice',
-        'unknown_names',
-    )
     # Together longer than the timeout, each shorter.
-    for fault in faults:
-        client.set_fault(fault)
+    faults = 'frozen bag_loop half all_nan old_stamp future_stamp name_twice unknown_names'
+    for fault in faults.split():
+        rig.client.set_fault(fault)
         rig.during(0.1)
     assert 'joint_states stale: last ' in rig.until_fault()
     assert_it_sank_by_the_ramp(rig)
@@ -207,48 +211,26 @@ def test_a_suspended_relay_stops_the_output_by_the_ramp(rig):
     assert_it_sank_by_the_ramp(rig)
 
 
-def test_an_arm_with_a_reported_jump_is_not_driven(rig):
-    before = rig.client.now
-    rig.client.set_fault('jump')
-    reason = rig.until_fault()
-    assert '3 times in a row' in reason
-    assert newest_stop(rig)[0] - before < TIMEOUT  # at once, and not when the states are stale
-    assert_it_sank_by_the_ramp(rig)
-
-
-def test_an_arm_with_a_reported_runaway_is_not_driven(rig):
-    rig.client.set_fault('too_fast')
-    reason = rig.until_fault()
-    assert 'runaway: shoulder_yaw at 50' in reason
-    assert_it_sank_by_the_ramp(rig)
-
-
-def test_a_forgotten_publisher_of_zeros_stops_the_output(rig):
+@pytest.mark.parametrize(
+    'kind, topic, reasons',
+    [
+        # As joint_state_publisher does it, with zeros; the arm stands far from zero.
+        (JointState, '/joint_states', ('2 publishers on /joint_states', '3 times in a row')),
+        (Float64MultiArray, COMMAND_TOPIC, (f'1 other publisher(s) on {COMMAND_TOPIC}',)),
+    ],
+    ids=['joint states', 'efforts'],
+)
+def test_a_conflicting_publisher_stops_the_output(rig, kind, topic, reasons):
     node, names = rig.client.node, rig.arm.names
-    # As joint_state_publisher does it; the arm stands far from zero.
-    rival = node.create_publisher(JointState, 'joint_states', 1)
-    timer = node.create_timer(
-        0.1,
-        lambda: rival.publish(
-            JointState(header=JointState().header, name=names, position=[0.0] * len(names))
-        ),
-    )
+    conflicting = node.create_publisher(kind, topic, 1)
+    zeros = JointState(name=names, position=[0.0] * len(names))
+    timer = node.create_timer(0.1, lambda: kind is JointState and conflicting.publish(zeros))
     try:
         reason = rig.until_fault()
     finally:
         node.destroy_timer(timer)
-        node.destroy_publisher(rival)
-    assert '2 publishers on /joint_states' in reason or '3 times in a row' in reason
-    assert_it_sank_by_the_ramp(rig)
-
-
-def test_another_source_of_efforts_stops_the_output(rig):
-    rival = rig.client.node.create_publisher(Float64MultiArray, COMMAND_TOPIC, 1)
-    try:
-        reason = rig.until_fault()
-    finally:
-        rig.client.node.destroy_publisher(rival)
-    assert f'1 other publisher(s) on {COMMAND_TOPIC}' in reason
+        node.destroy_publisher(conflicting)
+    assert any(text in reason for text in reasons)
     assert_it_sank_by_the_ramp(rig)
 
 
@@ -256,25 +238,19 @@ def test_a_controller_with_another_order_of_joints_is_not_driven(rig):
     client = rig.client
     client.set_brakes(True)
     assert client.enable(False).success
-    rig.until(lambda: client.output == 'READY')
-    other = Node('other_controller', context=client.context)
+    client.until_output('READY')
     order = list(reversed(rig.arm.driven_names))
-    other.declare_parameter('joints', order)
-    other.create_subscription(Float64MultiArray, COMMAND_TOPIC, lambda message: None, 1)
-    client.executor.add_node(other)
-    try:
+    other = Controller(client, 'other_controller', COMMAND_TOPIC, joints=order)
 
-        def is_refused():
-            answer = client.enable(True)
-            if answer.success:  # it has not been found yet
-                client.enable(False)
-                rig.until(lambda: client.output == 'READY')
-            return answer.message if not answer.success else ''
+    def refusal():
+        answer = client.enable(True)
+        if answer.success:  # it has not been found yet
+            client.enable(False)
+            client.until_output('READY')
+        return answer.message if not answer.success else ''
 
-        message = rig.until(is_refused)
-    finally:
-        client.executor.remove_node(other)
-        other.destroy_node()
+    with contextlib.closing(other):
+        message = rig.until(refusal)
     assert '/other_controller' in message
     assert ', '.join(order) in message and ', '.join(rig.arm.driven_names) in message
 
@@ -283,7 +259,7 @@ def test_a_controller_with_another_order_of_joints_is_not_driven(rig):
 
 
 def assert_a_signal_lets_the_arm_sink(rig, number):
-    """It ends in order, and the arm sinks by the ramp."""
+    """Check the exit code after a signal, and that the arm sinks by the ramp."""
     rig.processes.send('node', number)
     rig.until(lambda: not rig.processes.is_running('node'))
     rig.client.set_brakes(True)

@@ -1,5 +1,6 @@
 """Log hints while the node waits: real topics, and a clock of the test."""
 
+import re
 from types import SimpleNamespace
 
 from dynamics_node import RobotModel
@@ -28,11 +29,9 @@ NO_DESCRIPTION = {'robot_description': '', 'robot_description_file': ''}
 
 
 @pytest.fixture
-def other():
+def other(participant):
     """Return a second participant, whose publishers are not those of the node."""
-    other = Client('other')
-    yield other
-    other.close()
+    return participant('other')
 
 
 class Waiting:
@@ -94,7 +93,11 @@ def published(waiting, other):
 
 def test_a_hint_is_not_logged_too_early_too_often_or_without_need(waiting, capfd):
     assert waiting.after(0.99 * PATIENCE, capfd) == ''
-    assert 'no robot description' in waiting.after(0.01 * PATIENCE, capfd)
+    text = waiting.after(0.01 * PATIENCE, capfd)
+    # Two ways to provide a description.
+    assert 'no robot description on /robot_description for 5 s' in text
+    assert 'ros2 run robot_state_publisher robot_state_publisher my_arm.urdf' in text
+    assert '-p robot_description_file:=my_arm.urdf' in text
     assert waiting.after(0.9 * REPEAT_EVERY, capfd) == ''
     assert 'no robot description' in waiting.after(0.1 * REPEAT_EVERY, capfd)
     waiting.describe()
@@ -105,65 +108,61 @@ def test_a_hint_is_not_logged_too_early_too_often_or_without_need(waiting, capfd
     assert 'no joint state' in waiting.after(0.2 * PATIENCE, capfd)
 
 
-def test_without_a_description_the_hint_shows_two_ways_to_provide_one(waiting, capfd):
-    text = waiting.after(PATIENCE, capfd)
-    assert 'no robot description on /robot_description for 5 s' in text
-    assert 'ros2 run robot_state_publisher robot_state_publisher my_arm.urdf' in text
-    assert '-p robot_description_file:=my_arm.urdf' in text
+DESCRIPTION, STATES = 'robot_description', 'joint_states'
+LEFT = f'/left/{DESCRIPTION}'
+LOAD, BROADCASTER = 'ros2 control load_controller ', '--set-state active joint_state_broadcaster'
 
 
-def test_a_description_in_another_namespace_is_found(waiting, other, capfd):
-    other.node.create_publisher(String, '/left/robot_description', LATCHED)
-    # A subscription alone is no source.
-    other.node.create_subscription(String, '/right/robot_description', lambda _: None, LATCHED)
-    # What a motion planner publishes is another kind of description.
-    other.node.create_publisher(String, '/robot_description_semantic', LATCHED)
-    # Has the name, but another type.
-    other.node.create_publisher(JointState, '/up/robot_description', LATCHED)
-    other.node.destroy_publisher(other.description)
+@pytest.mark.parametrize(
+    'waiting, is_described, topics, expected',
+    [
+        # A broadcaster with use_local_topics has its states in a namespace of its own.
+        ('', True, [f'/jsb/{STATES}'], [f'--ros-args -r {STATES}:=/jsb/{STATES}']),
+        ('', True, [f'/jsb/{STATES}', f'/jsb/{DESCRIPTION}'], ['--ros-args -r __ns:=/jsb']),
+        ('', True, [f'/arm/{STATES}_raw'], [f'--ros-args -r {STATES}:=/arm/{STATES}_raw']),
+        ('', False, [LEFT], [f'But {LEFT} has a publisher', '--ros-args -r __ns:=/left']),
+        ('right', False, [LEFT], [f'on /right/{DESCRIPTION}', f'-r {DESCRIPTION}:={LEFT}']),
+        (
+            '',
+            True,
+            [],
+            [
+                f'no joint state on /{STATES} for {ARM.joint_names[0]}, ',
+                'No node publishes there.',
+                LOAD + BROADCASTER,
+            ],
+        ),
+        ('left', True, [], [f'{LOAD}--controller-manager /left/controller_manager {BROADCASTER}']),
+    ],
+    indirect=['waiting'],
+)
+def test_the_hint_shows_the_command_for_what_is_found(
+    waiting, other, is_described, topics, expected, capfd
+):
+    node = other.node
+    node.destroy_publisher(other.description)
+    node.destroy_publisher(other.states)
+    for topic in topics:
+        kind, qos = (
+            (String, LATCHED) if DESCRIPTION in topic else (JointState, qos_profile_sensor_data)
+        )
+        node.create_publisher(kind, topic, qos)
+    # Neither a subscription, nor what a motion planner publishes, nor another type is a source.
+    node.create_subscription(String, f'/sub/{DESCRIPTION}', lambda _: None, LATCHED)
+    node.create_publisher(String, f'/{DESCRIPTION}_semantic', LATCHED)
+    node.create_publisher(JointState, f'/type/{DESCRIPTION}', LATCHED)
     waiting.until_published(
-        '/left/robot_description',
-        '/up/robot_description',
-        '/robot_description_semantic',
-        without=['/robot_description'],
+        *topics,
+        f'/type/{DESCRIPTION}',
+        f'/{DESCRIPTION}_semantic',
+        without=[f'/{DESCRIPTION}', f'/{STATES}'],
     )
+    if is_described:
+        waiting.describe()
     text = waiting.after(PATIENCE, capfd)
-    assert 'But /left/robot_description has a publisher' in text
-    assert '--ros-args -r __ns:=/left' in text
-    assert '/right' not in text and '/up' not in text and 'semantic' not in text
-
-
-def test_a_namespace_is_taken_over_only_where_the_description_is_too(waiting, other, capfd):
-    # A broadcaster with use_local_topics has its states in a namespace of its own.
-    other.node.create_publisher(JointState, '/local_jsb/joint_states', qos_profile_sensor_data)
-    other.node.destroy_publisher(other.states)
-    waiting.until_published('/local_jsb/joint_states', without=['/joint_states'])
-    waiting.describe()
-    text = waiting.after(PATIENCE, capfd)
-    assert '--ros-args -r joint_states:=/local_jsb/joint_states' in text and '__ns' not in text
-    other.node.create_publisher(String, '/local_jsb/robot_description', LATCHED)
-    waiting.until_published('/local_jsb/robot_description')
-    assert '--ros-args -r __ns:=/local_jsb' in waiting.after(REPEAT_EVERY, capfd)
-
-
-@pytest.mark.parametrize('waiting', ['right'], indirect=True)
-def test_in_a_namespace_only_the_topic_is_remapped(waiting, other, capfd):
-    other.node.destroy_publisher(other.description)
-    other.node.create_publisher(String, '/left/robot_description', LATCHED)
-    waiting.until_published('/left/robot_description', without=['/robot_description'])
-    text = waiting.after(PATIENCE, capfd)
-    assert 'on /right/robot_description' in text
-    assert '-r robot_description:=/left/robot_description' in text
-
-
-BROADCASTER = 'ros2 control load_controller --set-state active joint_state_broadcaster'
-
-
-def test_without_joint_states_the_hint_starts_the_broadcaster(waiting, capfd):
-    waiting.describe()
-    text = waiting.after(PATIENCE, capfd)
-    assert f'no joint state on /joint_states for {ARM.joint_names[0]}, ' in text
-    assert 'No node publishes there.' in text and BROADCASTER in text
+    assert all(part in text for part in expected), text
+    assert ('__ns' in text) == ('__ns' in ''.join(expected))
+    assert not any(word in text for word in ('/sub', '/type', 'semantic'))
 
 
 def test_ended_joint_states_are_reported(waiting, capfd):
@@ -172,7 +171,7 @@ def test_ended_joint_states_are_reported(waiting, capfd):
     with pytest.raises(RejectedStateError):
         waiting.feed(ARM.joint_names, [np.nan] * 8)
     text = waiting.after(PATIENCE + 1.0, capfd)
-    assert 'No node publishes there any more.' in text and BROADCASTER in text
+    assert 'No node publishes there any more.' in text and LOAD + BROADCASTER in text
     assert 'Received:' not in text and 'dropped' not in text
 
 
@@ -187,30 +186,9 @@ def test_ended_joint_states_of_a_known_publisher_are_reported(waiting, published
     assert 'ros2 control list_controllers' in text and 'Received:' not in text
 
 
-@pytest.mark.parametrize('waiting', ['left'], indirect=True)
-def test_in_a_namespace_the_broadcaster_has_another_controller_manager(waiting, other, capfd):
-    other.node.destroy_publisher(other.states)
-    waiting.until_published(without=['/joint_states'])
-    waiting.describe()
-    text = waiting.after(PATIENCE, capfd)
-    assert (
-        'ros2 control load_controller --controller-manager /left/controller_manager '
-        '--set-state active joint_state_broadcaster'
-    ) in text
-
-
 def test_a_silent_publisher_is_inspected(waiting, published, capfd):
     waiting.describe()
     assert 'ros2 topic info --verbose /joint_states' in waiting.after(PATIENCE, capfd)
-
-
-def test_joint_states_under_another_name_are_found(waiting, other, capfd):
-    other.node.destroy_publisher(other.states)
-    other.node.create_publisher(JointState, '/arm/joint_states_raw', qos_profile_sensor_data)
-    waiting.until_published('/arm/joint_states_raw', without=['/joint_states'])
-    waiting.describe()
-    text = waiting.after(PATIENCE, capfd)
-    assert '--ros-args -r joint_states:=/arm/joint_states_raw' in text
 
 
 def test_missing_joints_are_named_with_the_joints_parameter(waiting, published, capfd):
@@ -283,50 +261,56 @@ def test_the_node_logs_the_hints(client, start):
         return [message for message in log if text in message.msg]
 
     start('__node:=without_description')
-    client.until(lambda: logged('no robot description on /robot_description for 5 s'))
     start('__node:=with_other_names', robot_description_file=PENDULUM)
-    client.until(
-        lambda: logged("They have the prefix 'left_'"),
-        lambda: client.publish(['left_hinge'], [0.0]),
+    # Best effort, where the subscription asks for reliable.
+    client.node.create_publisher(JointState, '/others/joint_states', qos_profile_sensor_data)
+    start(
+        '__node:=incompatible',
+        '__ns:=/others',
+        robot_description_file=PENDULUM,
+        **{'qos_overrides./others/joint_states.subscription.reliability': 'reliable'},
     )
-    assert {message.name for message in logged(' for 5 s')} == {
-        'without_description',
-        'with_other_names',
+    expected = {
+        'without_description': 'no robot description on /robot_description for 5 s',
+        'with_other_names': "They have the prefix 'left_'",
+        'others.incompatible': 'the quality of service of /test_client does not fit',
     }
+    client.until(
+        lambda: all(map(logged, expected.values())), lambda: client.publish(['left_hinge'], [0.0])
+    )
+    assert logged('no joint state on /others/joint_states for hinge')
+    for name, text in expected.items():
+        assert {message.name for message in logged(text)} == {name}
 
 
 RELIABLE = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE)
 BEST_EFFORT = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
 
-def mismatches(client, other, kind, qos):
-    """Return the mismatches of a subscription with the publisher of another client."""
+@pytest.mark.parametrize(
+    'kind, qos, expected',
+    [
+        (JointState, RELIABLE, r'\A\Z'),
+        (JointState, BEST_EFFORT, '^the quality of service of /other does not fit: .*(?i:reliab)'),
+        (
+            String,
+            RELIABLE,
+            '^/other publishes std_msgs/msg/String there, expected sensor_msgs/msg/JointState$',
+        ),
+    ],
+    ids=['compatible', 'quality of service', 'type'],
+)
+def test_incompatible_publishers_are_named(client, other, kind, qos, expected):
     # Another context: one cannot have two types on a topic.
     subscription = client.node.create_subscription(JointState, 'states', lambda _: None, RELIABLE)
     other.node.create_publisher(kind, 'states', qos)
     # The name of a publisher's node comes some time after the publisher.
     client.until(
-        lambda: [
-            info
-            for info in client.node.get_publishers_info_by_topic('/states')
-            if info.node_name == 'other'
-        ]
+        lambda: (
+            'other'
+            in {info.node_name for info in client.node.get_publishers_info_by_topic('/states')}
+        )
     )
-    return incompatible_publishers(client.node, subscription)
-
-
-def test_a_compatible_publisher_is_not_reported(client, other):
-    assert mismatches(client, other, JointState, RELIABLE) == []
-
-
-def test_another_quality_of_service_is_named_with_the_publisher(client, other):
-    [text] = mismatches(client, other, JointState, BEST_EFFORT)
-    assert text.startswith('the quality of service of /other does not fit: ')
-    assert 'reliab' in text.lower()
-
-
-def test_another_type_is_named_with_what_was_expected(client, other):
-    [text] = mismatches(client, other, String, RELIABLE)
-    assert text == (
-        '/other publishes std_msgs/msg/String there, expected sensor_msgs/msg/JointState'
-    )
+    texts = incompatible_publishers(client.node, subscription)
+    assert len(texts) == (expected != r'\A\Z')
+    assert re.search(expected, ''.join(texts))

@@ -69,53 +69,60 @@ class Receiver:
     def spin(self):
         self.client.executor.spin_once(timeout_sec=0.0)
 
+    def publishers(self):
+        """Adapt the queue, and return the number of publishers."""
+        self.input.adapt_queue()
+        return self.input.publishers
 
-@pytest.fixture(params=[True, False], ids=['raw', 'rclpy'])
+
+@pytest.fixture(params=[{'raw': True}, {'raw': False}], ids=['raw', 'rclpy'])
 def receiver(request):
-    receiver = Receiver(request.param)
+    receiver = Receiver(**request.param)
     yield receiver
     receiver.client.close()
 
 
-def at(client, *positions):
-    """Return an action that publishes states."""
-
-    def publish():
-        for position in positions:
-            client.publish(['hinge'], [position])
-
-    return publish
+def send(client, *positions):
+    for position in positions:
+        client.publish(['hinge'], [position])
 
 
-def until_received(client, receiver, *positions):
+def until_received(client, receiver, position):
     """Publish until a state was received, then wait until none is in transit."""
     receiver.received.clear()
-    both = at(client, *positions)
-    client.until(lambda: receiver.received, lambda: (both(), receiver.spin()))
+    client.until(lambda: receiver.received, lambda: (send(client, position), receiver.spin()))
     client.during(0.05, receiver.spin)
     receiver.received.clear()
+
+
+def until_newest(client, receiver, *positions):
+    """Publish at once, and wait until the last one was received."""
+    send(client, *positions)
+    client.during(0.02)
+    newest = [positions[-1]]
+    client.until(lambda: receiver.received and receiver.received[-1][0] == newest, receiver.spin)
 
 
 def test_the_newest_state_wins_and_those_before_it_are_counted(client, receiver):
     until_received(client, receiver, 0.0)
     assert receiver.input.count_publishers() == 1
-    at(client, 0.0)()
-    client.until(lambda: receiver.received, receiver.spin)
+    until_newest(client, receiver, 0.0)
     before = receiver.input.skipped
-    at(client, *(0.001 * i for i in range(9)))()
-    client.during(0.02)
-    client.until(lambda: receiver.received[-1][0] == [0.008], receiver.spin)
+    until_newest(client, receiver, *(0.001 * i for i in range(9)))
     assert len(receiver.received) == 2
     assert receiver.input.skipped - before == 8
-    at(client, *(0.001 * i for i in range(9, 12)))()
-    client.during(0.02)
-    client.until(lambda: receiver.received[-1][0] == [0.011], receiver.spin)
+    until_newest(client, receiver, *(0.001 * i for i in range(9, 12)))
     assert receiver.input.skipped - before == 10
 
 
 def test_a_position_beyond_its_limits_is_used_with_a_warning(client, receiver):
     until_received(client, receiver, 1.25)
-    assert receiver.warnings == ['beyond the position limits: hinge at 1.25 (limits -1 to 1)']
+    warning = 'beyond the position limits: hinge at 1.25 (limits -1 to 1)'
+    assert receiver.warnings == [warning]
+    # An arm that rests there does not fill the log.
+    client.during(1.5 * WARN_EVERY, lambda: send(client, 1.25))
+    receiver.spin()
+    assert receiver.warnings.count(warning) == 1
 
 
 def test_dropped_states_are_warned_about_once_a_second_per_kind(client, receiver):
@@ -136,7 +143,7 @@ def test_dropped_states_are_warned_about_once_a_second_per_kind(client, receiver
 def test_an_exception_in_the_callback_is_reported_and_the_next_state_is_used(client, receiver):
     until_received(client, receiver, 0.0)
     receiver.robot.buffer.runaway = lambda: 1 / 0
-    client.until(lambda: receiver.errors, lambda: (at(client, 0.0)(), receiver.spin()))
+    client.until(lambda: receiver.errors, lambda: (send(client, 0.0), receiver.spin()))
     assert any(
         'internal error in ' in text and 'division by zero' in text for text in receiver.errors
     )
@@ -159,81 +166,55 @@ def test_a_missing_stamp_is_replaced_by_the_arrival_time(client, receiver):
     assert (stamp.sec, stamp.nanosec) >= (before.sec, before.nanosec)
 
 
-def test_unreadable_states_do_not_count_as_skipped(client):
-    receiver = Receiver(raw=True)
-    try:
-        until_received(client, receiver, 0.0)
-        assert receiver.input.count_publishers() == 1
-        at(client, 0.0)()
-        client.until(lambda: receiver.received, receiver.spin)
-        before, rejected = receiver.input.skipped, receiver.robot.buffer.rejected
-        client.states.publish(b'\x00\x01\x00\x00no joint state')
-        client.until(lambda: rejected['unreadable'] == 1, receiver.spin)
-        receiver.received.clear()
-        at(client, 0.0)()
-        client.until(lambda: receiver.received, receiver.spin)
-        assert receiver.input.skipped == before
-    finally:
-        receiver.client.close()
+@pytest.mark.parametrize('receiver', [{'raw': True}], indirect=True)
+def test_unreadable_states_do_not_count_as_skipped(client, receiver):
+    until_received(client, receiver, 0.0)
+    until_newest(client, receiver, 0.0)
+    before, rejected = receiver.input.skipped, receiver.robot.buffer.rejected
+    client.states.publish(b'\x00\x01\x00\x00no joint state')
+    client.until(lambda: rejected['unreadable'] == 1, receiver.spin)
+    receiver.received.clear()
+    until_newest(client, receiver, 0.0)
+    assert receiver.input.skipped == before
 
 
-def test_an_arm_that_rests_beyond_its_limit_does_not_fill_the_log(client, receiver):
-    until_received(client, receiver, 1.25)
-    client.during(1.5 * WARN_EVERY, lambda: client.publish(['hinge'], [1.25]))
-    receiver.spin()
-    assert sum('beyond the position limits' in text for text in receiver.warnings) == 1
+def test_two_publishers_share_a_queue_without_replacing_states(client, participant, receiver):
+    gripper, heard = participant('gripper'), receiver.robot.buffer
 
-
-def test_two_publishers_share_a_queue_without_replacing_states(client, receiver):
-    gripper = Client('gripper')
-    rounds, heard = iter(range(10**6)), receiver.robot.buffer
-
-    def together():
-        position = next(rounds) % 1000 * 1e-3
-        client.publish(['hinge'], [position])
+    def gripper_state():
         gripper.publish(['finger'], [0.0])
-        gripper.publish(['finger'], [0.0])
-        return position
 
-    try:
-        # Discovered both, and the new subscription by both.
-        client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 2)
+    # Discovered both, and the new subscription by both.
+    client.until(lambda: receiver.publishers() == 2)
+    for names, action in ((('hinge',), lambda: send(client, 0.0)), (('finger',), gripper_state)):
         client.until(
-            lambda: heard.newest_names == ('hinge',), lambda: (at(client, 0.0)(), receiver.spin())
+            lambda: heard.newest_names == names,  # noqa: B023
+            lambda: (action(), receiver.spin()),  # noqa: B023
         )
-        client.until(
-            lambda: heard.newest_names == ('finger',),
-            lambda: (gripper.publish(['finger'], [0.0]), receiver.spin()),
-        )
-        client.during(0.05, receiver.spin)
-        for _ in range(20):
-            accepted, position = heard.accepted, together()
-            client.until(lambda: heard.accepted == accepted + 3, receiver.spin)  # noqa: B023
-            assert heard.position[0] == position
-        # It is there only as long as the second one is, and never changed while efforts are sent.
-        receiver.input._path = SimpleNamespace(is_on=True)
-    finally:
-        gripper.close()
+    client.during(0.05, receiver.spin)
+    for i in range(20):
+        accepted = heard.accepted
+        send(client, 0.001 * i)
+        gripper_state(), gripper_state()
+        client.until(lambda: heard.accepted == accepted + 3, receiver.spin)  # noqa: B023
+        assert heard.position[0] == 0.001 * i
+    # It is there only as long as the second one is, and never changed while efforts are sent.
+    receiver.input._path = SimpleNamespace(is_on=True)
+    gripper.close()
     subscription = receiver.input.subscription
-    client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 1)
+    client.until(lambda: receiver.publishers() == 1)
     assert receiver.input.subscription is subscription
     receiver.input._path = receiver.path
     receiver.input.adapt_queue()
     assert receiver.input.subscription is not subscription
     until_received(client, receiver, 0.0)
-    at(client, *(0.001 * i for i in range(9)))()
-    client.during(0.02)
-    client.until(lambda: receiver.received and receiver.received[-1][0] == [0.008], receiver.spin)
+    until_newest(client, receiver, *(0.001 * i for i in range(9)))
     assert len(receiver.received) == 1
 
 
-def test_a_depth_of_the_parameters_is_not_changed(client):
-    receiver = Receiver(raw=False, depth=3)
-    gripper = Client('gripper')
-    try:
-        subscription = receiver.input.subscription
-        client.until(lambda: (receiver.input.adapt_queue(), receiver.input.publishers)[1] == 2)
-        assert receiver.input.subscription is subscription
-    finally:
-        gripper.close()
-        receiver.client.close()
+@pytest.mark.parametrize('receiver', [{'raw': False, 'depth': 3}], indirect=True)
+def test_a_depth_of_the_parameters_is_not_changed(client, participant, receiver):
+    participant('gripper')
+    subscription = receiver.input.subscription
+    client.until(lambda: receiver.publishers() == 2)
+    assert receiver.input.subscription is subscription

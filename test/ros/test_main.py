@@ -139,19 +139,3 @@ def test_efforts_of_a_lost_controller_are_reported_by_the_exit_code():
     output.path.lose_controller(time.monotonic(), '/c is inactive')
     assert unit.run() == 1
     assert any('the last efforts may stay in force: a: 5' in text for text in log)
-
-
-def test_a_second_signal_shortens_the_stop():
-    signals = signaled('SIGTERM', 1)
-    unit, _, log = loop(lambda spun: False, signals, stop_ramp=60.0)
-
-    def second(spun):
-        if spun == 300:
-            signals.count = 2
-        return False
-
-    unit._executor.fails = second
-    begin = time.monotonic()
-    assert unit.run() == 0
-    assert time.monotonic() - begin < 2.0
-    assert any('second signal' in text for text in log)

@@ -8,16 +8,16 @@ from dynamics_node.ros.parameters.parameters import Parameters
 from dynamics_node.ros.parameters.table import check_all, check_lengths, PARAMETERS
 import pytest
 from rclpy.parameter import Parameter as RosParameter
-from support.processes import Client
 import yaml
 
 ROOT = Path(__file__).parents[2]
 
 
-def test_defaults_pass_their_own_checks():
+def test_defaults_pass_their_own_checks_and_integers_count_as_doubles():
     values = check_all({})
     assert list(values) == [parameter.name for parameter in PARAMETERS]
     assert values['gravity'] == (0.0, 0.0, -9.81)
+    assert check_all({'effort_limits': [87, 12]})['effort_limits'] == (87.0, 12.0)
 
 
 @pytest.mark.parametrize(
@@ -61,10 +61,6 @@ def test_constraints_are_the_accepted_values_in_words():
     assert constraints['effort_limits'] == 'a finite number > 0'
     assert constraints['stop_behavior'] == 'one of ramp_to_zero, hold, zero'
     assert constraints['joints'] == constraints['publish_dynamics'] == ''
-
-
-def test_integers_are_accepted_as_doubles():
-    assert check_all({'effort_limits': [87, 12]})['effort_limits'] == (87.0, 12.0)
 
 
 @pytest.mark.parametrize(
@@ -114,17 +110,10 @@ def test_the_parameter_file_has_every_parameter_with_its_default():
 
 
 @pytest.fixture
-def started_node():
+def started_node(participant):
     """Return a node that was started with two undeclared names."""
-    client = Client(
-        'misspelled',
-        parameter_overrides=[
-            RosParameter('effort_limit', value=[1.0]),
-            RosParameter('color', value='red'),
-        ],
-    )
-    yield client.node
-    client.close()
+    overrides = [RosParameter('effort_limit', value=[1.0]), RosParameter('color', value='red')]
+    return participant('misspelled', parameter_overrides=overrides).node
 
 
 def test_a_misspelled_name_gets_a_warning_and_other_names_do_not(started_node, capfd):
@@ -134,10 +123,6 @@ def test_a_misspelled_name_gets_a_warning_and_other_names_do_not(started_node, c
         "there is no parameter 'effort_limit', and its value is ignored: is 'effort_limits' meant?"
     ) in log
     assert 'color' not in log
-
-
-def test_the_descriptor_has_the_description_and_the_accepted_values(started_node):
-    Parameters(started_node)
     descriptor = started_node.describe_parameter('state_timeout')
     assert descriptor.additional_constraints == 'a number > 0 and <= 10'
     assert descriptor.description.startswith('Largest age of a joint state, s')

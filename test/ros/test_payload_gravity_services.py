@@ -2,16 +2,14 @@
 
 import re
 
-from diagnostic_msgs.msg import DiagnosticArray
 from dynamics_interfaces.srv import GetGravityTorque, InverseDynamics, SetGravity, SetPayload
 from dynamics_node import RobotModel
 from geometry_msgs.msg import Inertia, Vector3, Vector3Stamped
 import numpy as np
 import pytest
-from rcl_interfaces.srv import GetParameters
-from rclpy.parameter import parameter_value_to_python
 from std_msgs.msg import Header
 from support.pinocchio_oracle import PinocchioOracle
+from support.processes import Diagnostics
 from support.random_payload import with_payload_link
 from support.robots import ARM7
 
@@ -19,6 +17,8 @@ ARM = RobotModel.from_urdf(ARM7)
 N = len(ARM.joint_names)
 Q = np.clip(np.linspace(0.8, -0.9, N), *ARM.position_limits.T)
 FRICTION = ('viscous', 'coulomb', 'smoothing_velocity')
+DOWN = (0.0, 0.0, -9.81)
+ON_HAND = {'payload.link': 'hand', 'payload.mass': 1.5}
 COM = (0.01, -0.02, 0.08)
 SIX = {'ixx': 0.02, 'ixy': 0.001, 'ixz': -0.002, 'iyy': 0.03, 'iyz': 0.003, 'izz': 0.025}
 TENSOR = np.array([[0.02, 0.001, -0.002], [0.001, 0.03, 0.003], [-0.002, 0.003, 0.025]])
@@ -53,7 +53,7 @@ def assert_gravity_torque_of(model, client):
     np.testing.assert_allclose(gravity_torque(client), model.gravity_torque(Q), rtol=0, atol=1e-12)
 
 
-def assert_gravity_torque_with_box(client, link, gravity=(0.0, 0.0, -9.81)):
+def assert_gravity_torque_with_box(client, link, gravity=DOWN):
     # By Pinocchio, from a URDF with the box as another link.
     text = with_payload_link(ARM7.read_text(), link, BOX.m, COM, TENSOR)
     expected = PinocchioOracle(text, gravity).dynamics(ARM.joint_names, Q, 0 * Q)[2]
@@ -62,54 +62,36 @@ def assert_gravity_torque_with_box(client, link, gravity=(0.0, 0.0, -9.81)):
     )
 
 
-def parameter(client, name):
-    """Return a parameter of the node; a tuple for an array."""
-    value = parameter_value_to_python(client.ask(GetParameters, names=[name]).values[0])
-    return value if isinstance(value, (float, str)) else tuple(value)
+def assert_refused(answer, message):
+    assert not answer.success
+    assert re.search(message, answer.message), answer.message
 
 
 @pytest.fixture(autouse=True)
 def reset(shared):
     yield
     assert set_payload(shared).success
-    assert set_gravity(shared, (0.0, 0.0, -9.81)).success
-
-
-def diagnosed_payload(messages):
-    """Return the payload in the newest diagnostics; None before the first."""
-    values = [
-        item
-        for message in messages[-1:]
-        for status in message.status
-        for item in status.values
-        if item.key == 'payload'
-    ]
-    return values[0].value if values else None
+    assert set_gravity(shared, DOWN).success
 
 
 def test_a_payload_changes_gravity_torque_and_leaves_no_trace_when_removed(shared):
-    before, health = gravity_torque(shared), shared.listen(DiagnosticArray, '/diagnostics')
+    before, diagnostics = gravity_torque(shared), Diagnostics(shared)
     for link in ('tool_center', 'forearm'):
         answer = set_payload(shared, link, BOX)
         assert answer.success, answer.message
-        assert answer.message == f'1.5 kg on {link}'
-        assert (answer.link, answer.inertia) == (link, BOX)
+        text = f'1.5 kg on {link}'
+        assert (answer.message, answer.link, answer.inertia) == (text, link, BOX)
         assert_gravity_torque_with_box(shared, link)
-        text = answer.message
-        shared.until(lambda: diagnosed_payload(health) == text)  # noqa: B023
-        assert parameter(shared, 'payload.link') == link
-        assert parameter(shared, 'payload.mass') == 1.5
-        assert parameter(shared, 'payload.com') == COM
-        assert parameter(shared, 'payload.inertia') == tuple(SIX.values())
+        shared.until(lambda: diagnostics.values('model').get('payload') == text)  # noqa: B023
+        parameters = {'link': link, 'mass': 1.5, 'com': [*COM], 'inertia': [*SIX.values()]}
+        for name, value in parameters.items():
+            assert shared.node_parameter(f'payload.{name}') == value
     answer = set_payload(shared, 'hand')
     assert (answer.success, answer.message) == (True, 'nothing is carried')
     assert (answer.link, answer.inertia) == ('', Inertia())
-    assert parameter(shared, 'payload.mass') == 0.0
+    assert shared.node_parameter('payload.mass') == 0.0
     assert gravity_torque(shared).tolist() == before.tolist()
-
-
-def test_a_payload_on_a_fixed_link_has_no_effect_and_the_answer_says_so(shared):
-    before = gravity_torque(shared)
+    # On a link that no joint moves it has no effect.
     answer = set_payload(shared, 'base', BOX)
     assert answer.success
     assert answer.message == '1.5 kg on base, which no joint moves: without any effect'
@@ -122,22 +104,10 @@ def test_a_payload_on_a_fixed_link_has_no_effect_and_the_answer_says_so(shared):
         ('nose', BOX, "^link: 'nose' is not a link of the robot; expected one of base, shoulder"),
         ('', BOX, 'link: expected the one that carries the payload, got none: one of base, '),
         ('hand', Inertia(m=-1.0), r'^inertia\.m: expected a number >= 0 and <= 100000, got -1.0$'),
-        (
-            'hand',
-            Inertia(m=np.nan),
-            r'^inertia\.m: expected a number >= 0 and <= 100000, got nan$',
-        ),
-        (
-            'hand',
-            Inertia(m=1.0, com=Vector3(x=np.inf)),
-            r'^inertia\.com: expected a number >= -1000 ',
-        ),
+        ('hand', Inertia(m=np.nan), r'^inertia\.m: expected a number .* <= 100000, got nan$'),
+        ('hand', Inertia(m=1.0, com=Vector3(x=np.inf)), r'^inertia\.com: expected .* >= -1000 '),
         ('hand', Inertia(m=1.0, com=Vector3(y=1e200)), r'^inertia\.com: expected .*got 1e\+200'),
-        (
-            'hand',
-            Inertia(m=1.0, ixy=np.nan),
-            r'^inertia\.ixx to izz: expected a finite number, got ',
-        ),
+        ('hand', Inertia(m=1.0, ixy=np.nan), r'^inertia\.ixx to izz: expected a finite number, '),
         ('hand', Inertia(m=1.0, ixx=0.1, iyy=0.1, izz=0.5), 'inertia is not physical: .*triangle'),
     ],
 )
@@ -145,18 +115,19 @@ def test_a_wrong_payload_is_refused_and_the_last_one_stays(shared, link, inertia
     assert set_payload(shared, 'hand', BOX).success
     loaded = gravity_torque(shared)
     answer = set_payload(shared, link, inertia)
-    assert not answer.success
-    assert re.search(message, answer.message), answer.message
+    assert_refused(answer, message)
     assert (answer.link, answer.inertia) == ('hand', BOX)
     assert gravity_torque(shared).tolist() == loaded.tolist()
 
 
 def test_the_payload_can_be_set_by_single_parameters(shared):
-    refused = shared.set_node_parameter('payload.mass', 1.5)
-    assert not refused.successful
-    assert 'payload.link: expected the link' in refused.reason
-    refused = shared.set_node_parameter('payload.link', 'nose')
-    assert "payload.link: 'nose' is not a link" in refused.reason
+    for name, value, reason in (
+        ('mass', 1.5, 'payload.link: expected the link'),
+        ('link', 'nose', "payload.link: 'nose' is not a link"),
+    ):
+        refused = shared.set_node_parameter(f'payload.{name}', value)
+        assert not refused.successful
+        assert reason in refused.reason
     assert shared.set_node_parameter('payload.link', 'hand').successful
     assert shared.set_node_parameter('payload.mass', 1.5).successful
     assert_gravity_torque_of(ARM.with_payload('hand', 1.5), shared)
@@ -184,7 +155,7 @@ def test_gravity_in_the_frame_of_a_moving_link(shared):
     assert 'not that of the earth' in answer.message
     assert answer.gravity.header.frame_id == 'base'
     assert numbers(answer.gravity) == pytest.approx(in_base, abs=1e-14)
-    assert parameter(shared, 'gravity') == tuple(numbers(answer.gravity))
+    assert shared.node_parameter('gravity') == numbers(answer.gravity)
     assert_gravity_torque_of(ARM.with_gravity(in_base), shared)
 
 
@@ -196,7 +167,7 @@ def test_only_the_joints_between_base_and_frame_must_be_measured(client, start):
 
     client.until_heard(publish)
     # The elbow, which turns the hand, is not measured.
-    answer = set_gravity(client, (0.0, 0.0, -9.81), 'hand', publish)
+    answer = set_gravity(client, DOWN, 'hand', publish)
     assert not answer.success
     assert 'no joint state within 1 s for upper_arm_roll, elbow_pitch, ' in answer.message
     assert answer.gravity.vector.z == -9.81
@@ -222,22 +193,17 @@ def test_gravity_torque_of_a_payload_in_any_mounting(shared, gravity):
         ((0.0, 0.0, np.nan), '', 'gravity: expected finite numbers'),
         ((0.0, 0.0, -30.0), '', 'gravity: expected a number >= -20'),
         (
-            (0.0, 0.0, -9.81),
+            DOWN,
             'map',
             "^header.frame_id: 'map' is not a link of the robot; expected one of base, ",
         ),
-        (
-            (0.0, 0.0, -9.81),
-            'elbow',
-            'how elbow is turned is not known: no joint state within 1 s',
-        ),
+        (DOWN, 'elbow', 'how elbow is turned is not known: no joint state within 1 s'),
     ],
 )
 def test_a_wrong_gravity_is_refused_and_the_last_one_stays(shared, vector, frame, message):
     shared.during(1.1)  # until the states of other tests are too old
     answer = set_gravity(shared, vector, frame)
-    assert not answer.success
-    assert re.search(message, answer.message), answer.message
+    assert_refused(answer, message)
     assert answer.gravity.vector.z == -9.81
     assert answer.gravity.header.frame_id == 'base'
 
@@ -249,8 +215,7 @@ def test_gravity_payload_rotors_and_friction_from_the_start(client, start):
         rotor_inertia='[0.3, 0.1]',
         joints='[elbow_pitch, wrist_roll]',
         **{
-            'payload.link': 'hand',
-            'payload.mass': 1.5,
+            **ON_HAND,
             'payload.com': str(list(COM)),
             'payload.inertia': str(list(SIX.values())),
             'friction.viscous': '[0.7, 0.2]',
@@ -275,39 +240,9 @@ def test_gravity_payload_rotors_and_friction_from_the_start(client, start):
         np.testing.assert_allclose(answer.effort, expected, rtol=1e-11)
 
 
-@pytest.mark.parametrize(
-    ('parameters', 'message'),
-    [
-        ({'payload.mass': 1.0}, 'payload.link: expected the link that carries payload.mass'),
-        (
-            {'payload.mass': 1.0, 'payload.link': 'nose'},
-            "payload.link: 'nose' is not a link of the robot; expected one of base",
-        ),
-        (
-            {
-                'payload.mass': 1.0,
-                'payload.link': 'hand',
-                'payload.inertia': '[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]',
-            },
-            'inertia is not physical',
-        ),
-        ({'rotor_inertia': '[0.1]'}, 'rotor_inertia: expected 8 numbers for shoulder_yaw'),
-        ({'friction.coulomb': '[-1.0]'}, 'friction.coulomb: expected a number >= 0 and <= 1e.06'),
-    ],
-)
-def test_a_start_with_a_wrong_parameter_ends_at_once_with_the_reason(start, parameters, message):
-    code, output = start(robot_description_file=ARM7, **parameters).wait(60.0)
-    assert code == 1
-    assert re.search(message, output), output
-
-
-def test_friction_and_rotor_inertia_change_at_run_time(shared):
+def test_friction_and_rotor_inertia_change_at_run_time(shared, change):
     qd, qdd = np.full(N, 0.1), np.ones(N)
     motion = {'position': Q.tolist(), 'velocity': qd.tolist(), 'acceleration': qdd.tolist()}
-
-    def put(name, values):
-        result = shared.set_node_parameter(name, values)
-        assert result.successful, result.reason
 
     def effort():
         return np.array(shared.ask(InverseDynamics, **motion, with_friction=True).effort)
@@ -320,11 +255,11 @@ def test_friction_and_rotor_inertia_change_at_run_time(shared):
     names = ['rotor_inertia', *(f'friction.{part}' for part in FRICTION)]
     for name in names:
         values, before, field = np.linspace(0.1, 0.8, N), effort(), name.split('.')[-1]
-        change = model.with_rotor_inertia if field == name else model.with_friction
-        model = change(**{field: values})
-        put(name, values.tolist())
+        replaced = model.with_rotor_inertia if field == name else model.with_friction
+        model = replaced(**{field: values})
+        change(name, values.tolist())
         assert_effort_of(model)
         assert np.abs(effort() - before).max() > 0.01, name
     for name in names:
-        put(name, [])
+        change(name, [])
     assert_effort_of(ARM)

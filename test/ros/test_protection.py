@@ -1,10 +1,12 @@
-"""Checks that stop the output while efforts are sent, and the supervision of these checks."""
+"""Checks while efforts are sent: other publishers, over DDS, and controllers."""
 
 from types import SimpleNamespace
 
 from dynamics_node.ros.context import NodeContext
 from dynamics_node.ros.torque_path.protection import Protection
+from dynamics_node.ros.torque_path.publisher_monitor import PublisherMonitor
 import pytest
+from std_msgs.msg import Float64MultiArray, String
 
 
 class Path:
@@ -70,22 +72,19 @@ def parts():
     return parts
 
 
-def test_a_check_without_findings_is_reported_to_the_torque_path(parts):
+@pytest.mark.parametrize('finding', ['conflicts', 'refusals'])
+def test_other_publishers_and_a_late_mismatch_stop_the_output(parts, finding):
     parts.unit.check()
     assert parts.path.calls == []
-    assert parts.path.checks == 1
-
-
-def test_other_publishers_stop_the_output(parts):
-    parts.conflicts.append('1 other publisher')
+    assert parts.path.checks == 1  # reported to the torque path
+    getattr(parts, finding).append('a reason')
     parts.unit.check()
-    assert parts.path.calls == [('fault', '1 other publisher')]
-
-
-def test_a_late_mismatch_of_a_controller_stops_the_output(parts):
-    parts.refusals.append('another order')
+    assert parts.path.calls == [('fault', 'a reason')]
+    # While the output is off, only the controllers are checked.
+    parts.path.calls.clear()
+    parts.path.is_driving = parts.path.is_on = False
     parts.unit.check()
-    assert parts.path.calls == [('fault', 'another order')]
+    assert parts.path.calls == []
 
 
 def test_a_deactivated_or_lost_controller_ends_the_output(parts):
@@ -118,31 +117,23 @@ def test_a_second_controller_that_still_listens_gets_the_whole_stop(parts, other
     assert what == 'lost' and '/second no longer listens to the commands' in reason
 
 
-def test_a_listener_that_is_no_controller_may_leave(parts):
-    parts.next_listeners = {'/controller': listener(), '/plot': listener(is_controller=False)}
-    parts.unit.check()
-    parts.next_listeners = {'/controller': listener()}
-    parts.unit.check()
-    assert parts.path.calls == []
-
-
-def test_the_first_controller_that_begins_to_listen_gets_the_ramp(parts):
+def test_a_controller_that_begins_to_listen_gets_the_ramp(parts):
+    ramp = ('restart', '/controller has begun to listen to the commands')
     parts.controllers.listeners = parts.next_listeners = {}
     parts.unit.check()
     parts.next_listeners = {'/controller': listener()}
     parts.unit.check()
-    assert parts.path.calls == [('restart', '/controller has begun to listen to the commands')]
+    assert parts.path.calls == [ramp]
     parts.next_listeners = {'/controller': listener(), '/plot': listener(is_controller=False)}
     parts.unit.check()
     assert len(parts.path.calls) == 1
-
-
-def test_a_restarted_controller_gets_the_ramp(parts):
+    # One that is no controller may leave.
+    parts.next_listeners = {'/controller': listener()}
     parts.unit.check()
-    assert parts.path.calls == []
-    parts.controllers.renewed = ['/controller']
+    assert len(parts.path.calls) == 1
+    parts.controllers.renewed = ['/controller']  # restarted
     parts.unit.check()
-    assert parts.path.calls == [('restart', '/controller has begun to listen to the commands')]
+    assert parts.path.calls == [ramp, ramp]
 
 
 def test_a_check_that_raises_is_not_reported(parts):
@@ -156,9 +147,53 @@ def test_a_check_that_raises_is_not_reported(parts):
     assert len(parts.errors) == 1
 
 
-def test_only_the_controllers_are_checked_while_the_output_is_off(parts):
-    parts.path.is_driving = parts.path.is_on = False
-    parts.conflicts.append('1 other publisher')
-    parts.refusals.append('another order')
-    parts.unit.check()
-    assert parts.path.calls == []
+def monitor(client, allow=False):
+    """Return a monitor of the topics of a client."""
+    states = SimpleNamespace(
+        topic='/joint_states',
+        count_publishers=lambda: client.node.count_publishers('/joint_states'),
+    )
+    context = NodeContext(client.node, {'allow_several_state_publishers': allow})
+    return PublisherMonitor(context, '/efforts', states, SimpleNamespace(topic='/described'))
+
+
+def test_other_sources_of_efforts_and_states_are_named(client, participant):
+    client.node.create_publisher(Float64MultiArray, 'efforts', 1)
+    unit = monitor(client)
+    client.until(lambda: client.node.count_publishers('/efforts') == 1)
+    assert unit.conflicts() == []
+    other = participant('joint_state_publisher')
+    other.node.create_publisher(Float64MultiArray, 'efforts', 1)
+    # Its name comes some time after it.
+    client.until(lambda: sum('joint_state_publisher' in text for text in unit.conflicts()) == 2)
+    efforts, joint_states = unit.conflicts()
+    assert efforts == (
+        '1 other publisher(s) on /efforts (/joint_state_publisher): two sources '
+        'of effort would fight'
+    )
+    assert joint_states.startswith('2 publishers on /joint_states (/joint_state_publisher')
+    assert 'allow_several_state_publishers' in joint_states
+    unit = monitor(client, allow=True)  # several sources of states
+    assert unit.conflicts() == [efforts]
+    other.close()
+    client.until(lambda: unit.conflicts() == [])
+
+
+def test_another_node_of_the_same_name_is_named_too(client, participant):
+    client.node.create_publisher(Float64MultiArray, 'efforts', 1)
+    name = client.node.get_name()
+    participant(name).node.create_publisher(Float64MultiArray, 'efforts', 1)
+    unit = monitor(client)
+    client.until(lambda: any(f'(/{name})' in text for text in unit.conflicts()))
+
+
+def test_a_second_publisher_of_descriptions_is_a_conflict(client, participant):
+    unit, name = monitor(client), 'second_robot_state_publisher'
+    client.node.create_publisher(String, '/described', 1)
+    client.until(lambda: client.node.count_publishers('/described') == 1)
+    assert unit.description_conflicts() == []
+    participant(name).node.create_publisher(String, '/described', 1)
+    client.until(lambda: name in ''.join(unit.description_conflicts()))
+    [text] = unit.description_conflicts()
+    assert text.startswith('2 publishers on /described')
+    assert 'which of them describes this robot?' in text

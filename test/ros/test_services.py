@@ -9,9 +9,7 @@ from dynamics_interfaces.srv import (
     GetMassMatrix,
     InverseDynamics,
 )
-from dynamics_node import ArgumentError, RobotModel
-from dynamics_node.ros.services.query import finite, Query
-from dynamics_node.ros.torque_path.active_robot import ActiveRobot
+from dynamics_node import RobotModel
 from geometry_msgs.msg import Point
 import numpy as np
 import pytest
@@ -106,13 +104,6 @@ def test_a_permutation_of_the_joints_permutes_the_answer(shared):
     assert_equal_but_rounding(answer.gravity_torque, G[order])
 
 
-def test_a_missing_velocity_is_zero(shared):
-    answer = shared.ask(GetCoriolisMatrix, **AT_Q)
-    assert answer.success
-    assert not np.any(answer.coriolis_matrix)
-    np.testing.assert_array_equal(answer.velocity, np.zeros(N))
-
-
 @pytest.mark.parametrize(
     'fields, reason',
     [
@@ -180,9 +171,15 @@ def test_inverse_and_forward_dynamics_against_pinocchio(shared):
     assert answer.success, answer.message
     np.testing.assert_array_equal(answer.effort, tau[order])
     np.testing.assert_allclose(answer.acceleration, qdd[order], rtol=0, atol=1e-9)
+    answer = shared.ask(ForwardDynamics, **state, effort=[5.0])
+    assert_refused(answer, f'effort: expected {N} values')
 
 
 def test_missing_fields_are_zero_and_the_flags_switch_gravity_and_friction(shared):
+    answer = shared.ask(GetCoriolisMatrix, **AT_Q)
+    assert answer.success, answer.message
+    assert not np.any(answer.coriolis_matrix)
+    np.testing.assert_array_equal(answer.velocity, np.zeros(N))
     answer = shared.ask(InverseDynamics, **AT_Q)
     assert answer.success, answer.message
     assert_equal_but_rounding(answer.effort, ARM.gravity_torque(Q))
@@ -225,65 +222,32 @@ def test_the_jacobian_of_the_tip_by_default_and_of_no_unknown_link(shared):
     answer = shared.ask(GetJacobian, **AT_Q)
     assert answer.link == ARM.tip_link == 'tool_center'
     assert 'link tool_center' in answer.message
-    answer = shared.ask(GetJacobian, **AT_Q, link='nose')
-    assert_refused(answer, "link: 'nose' is not a link of the robot; expected one of base, ")
-    answer = shared.ask(GetJacobian, **AT_Q, point=Point(y=np.nan))
-    assert_refused(answer, 'point: expected finite numbers, m, got [0.0, nan, 0.0]')
+    for fields, reason in (
+        ({'link': 'nose'}, "link: 'nose' is not a link of the robot; expected one of base, "),
+        ({'point': Point(y=np.nan)}, 'point: expected finite numbers, m, got [0.0, nan, 0.0]'),
+    ):
+        assert_refused(shared.ask(GetJacobian, **AT_Q, **fields), reason)
 
 
-def test_without_a_robot_the_answer_says_what_to_do(client, start):
-    start()
-    assert_refused(client.ask(GetMassMatrix), 'publish robot_description')
-
-
-def test_joints_outside_the_choice_are_held(client, start):
-    index, q = np.array([3, 1, 5]), ARM.neutral_position.copy()
+def test_joints_outside_the_choice_are_held_where_they_were_measured(client, start):
+    index, others = np.array([3, 1, 5]), [0, 2, 4, 6, 7]
     chosen, position = [NAMES[i] for i in index], Q[index].tolist()
     start(robot_description_file=ARM7, joints=f'[{", ".join(chosen)}]')
-    q[index] = position
-    answer = client.ask(ForwardDynamics, position=position)
-    assert answer.joint_names == chosen
-    D, G = ARM.mass_matrix(q)[np.ix_(index, index)], ARM.gravity_torque(q)[index]
-    np.testing.assert_allclose(answer.acceleration, np.linalg.solve(D, -G), rtol=1e-12)
-    answer = client.ask(InverseDynamics, position=position, acceleration=list(answer.acceleration))
-    assert np.asarray(answer.effort) == pytest.approx(0.0, abs=1e-12)
-    answer = client.ask(GetJacobian, position=position, link='hand')
-    assert_equal_but_rounding(answer.jacobian, ARM.jacobian(q, 'hand')[:, index])
-
-
-def test_joints_outside_the_choice_stand_at_their_measured_position(client, start):
-    index, others = [1, 3], [0, 2, 4, 5, 6, 7]
-    start(robot_description_file=ARM7, joints=f'[{", ".join(NAMES[i] for i in index)}]')
 
     def check(q):
         q = q.copy()
-        q[index] = 0.4, -0.6
-        answer = client.ask(GetMassMatrix, position=[0.4, -0.6])
-        assert_equal_but_rounding(answer.mass_matrix, ARM.mass_matrix(q)[np.ix_(index, index)])
+        q[index] = position
+        answer = client.ask(ForwardDynamics, position=position)
+        assert answer.joint_names == chosen
+        D, G = ARM.mass_matrix(q)[np.ix_(index, index)], ARM.gravity_torque(q)[index]
+        np.testing.assert_allclose(answer.acceleration, np.linalg.solve(D, -G), rtol=1e-12)
+        acceleration = list(answer.acceleration)
+        answer = client.ask(InverseDynamics, position=position, acceleration=acceleration)
+        assert np.asarray(answer.effort) == pytest.approx(0.0, abs=1e-12)
+        answer = client.ask(GetJacobian, position=position, link='hand')
+        assert_equal_but_rounding(answer.jacobian, ARM.jacobian(q, 'hand')[:, index])
 
     check(ARM.neutral_position)
     client.until(client.states.get_subscription_count)
     client.during(0.2, lambda: client.publish([NAMES[i] for i in others], Q[others]))
     check(Q)
-
-
-def test_a_query_selects_the_requested_joints_in_the_requested_order():
-    chosen = (NAMES[4], NAMES[2])
-    robot = ActiveRobot(ARM, chosen)
-    query = Query(robot, GetDynamics.Request(joint_names=chosen[::-1], position=[0.1, 0.2]), 1.0)
-    assert query.names == list(chosen[::-1])
-    assert query.q[[4, 2]].tolist() == [0.2, 0.1]
-    matrix = np.arange(64.0).reshape(8, 8)
-    assert list(query.part(matrix[0])) == [2.0, 4.0]
-    assert list(query.block(matrix)) == [18.0, 20.0, 34.0, 36.0]
-    assert list(query.columns(matrix[:2])) == [2.0, 4.0, 10.0, 12.0]
-    assert query.message == 'at the given position, velocity zero'
-    assert list(query.whole('effort', [5.0, 6.0])) == [0, 0, 5.0, 0, 6.0, 0, 0, 0]
-    with pytest.raises(ArgumentError, match='effort: expected 2 values'):
-        query.whole('effort', [5.0])
-
-
-def test_finite_values_are_returned_unchanged_others_refused():
-    assert finite(np.ones(2)).tolist() == [1.0, 1.0]
-    with pytest.raises(ArgumentError, match='the result is not finite'):
-        finite(np.array([1.0, np.inf]))

@@ -7,9 +7,8 @@ import sys
 from dynamics_interfaces.srv import GetDynamics
 from dynamics_node.ros.parameters.table import PARAMETERS
 import pytest
-import rclpy
 from rclpy.node import NodeNameNonExistentError
-from std_msgs.msg import Float64MultiArray, String
+from std_msgs.msg import String
 from support.robots import PENDULUM
 from support.sros2_policy import POLICY, PolicyError, read
 from visualization_msgs.msg import MarkerArray
@@ -19,7 +18,8 @@ DOCUMENT = ROOT / 'docs' / 'security.md'
 MARKERS_POLICY = POLICY.with_name('sros2_policy_markers.xml')
 GUARD_POLICY = POLICY.with_name('sros2_policy_effort_guard.xml')
 # Only used while the output is enabled, and with a controller on the command topic.
-ON_ENABLE = '/forward_effort_controller/get_parameters'
+REQUESTS = ['/forward_effort_controller/get_parameters', '/controller_manager/list_controllers']
+ON_ENABLE = [*REQUESTS, '/forward_effort_controller/transition_event']
 sys.path.insert(0, str(ROOT / 'scripts'))
 
 from reference import graph as reference_graph  # noqa: E402
@@ -66,32 +66,17 @@ def check(client, allowed, *optional, **node):
     assert difference(graph(client, **node), allowed) == {}
 
 
-def test_the_node_uses_exactly_the_permitted_names(client, start):
-    start(use_sim_time='true')
-    check(client, read(POLICY.read_text()).allowed, ON_ENABLE)
+@pytest.mark.parametrize('namespace', ['/', '/left'])
+def test_the_node_uses_exactly_the_permitted_names(client, start, namespace):
+    start(f'__ns:={namespace}', use_sim_time='true')
+    allowed = read(POLICY.read_text(), namespace=namespace).allowed
+    optional = [namespace.rstrip('/') + name for name in ON_ENABLE]
+    check(client, allowed, *optional, namespace=namespace)
 
 
-def test_the_node_in_another_namespace_uses_exactly_the_permitted_names(client, start):
-    start('__ns:=/left', use_sim_time='true')
-    allowed = read(POLICY.read_text(), namespace='/left').allowed
-    check(client, allowed, f'/left{ON_ENABLE}', namespace='/left')
-
-
-@pytest.fixture
-def commands(client):
-    """Return the commands that a controller receives."""
-    controller = rclpy.create_node('forward_effort_controller', context=client.context)
-    commands = []
-    controller.create_subscription(
-        Float64MultiArray, 'forward_effort_controller/commands', commands.append, 10
-    )
-    client.executor.add_node(controller)
-    yield commands
-    controller.destroy_node()
-
-
-def test_an_enabled_node_uses_no_other_names(client, start, commands):
+def test_an_enabled_node_uses_no_other_names(client, start, controller):
     start()
+    commands = controller().received
     allowed = read(POLICY.read_text()).allowed
     forbidden = []
 
@@ -105,7 +90,7 @@ def test_an_enabled_node_uses_no_other_names(client, start, commands):
     client.until(lambda: len(commands) > 20, state)
     assert client.ask(GetDynamics, state).success
     assert not any(forbidden), max(forbidden, key=len)
-    check(client, allowed, ON_ENABLE, '/clock')
+    check(client, allowed, *REQUESTS, '/clock')  # clients end with the answer
 
 
 @pytest.mark.parametrize('namespace', ['/', '/left'])
@@ -123,7 +108,8 @@ def test_the_document_links_the_policy_of_the_markers_program():
     assert '(../config/sros2_policy_markers.xml), for an enclave `/markers`' in text
 
 
-def test_the_guard_uses_exactly_the_permitted_names(client, start, commands):
+def test_the_guard_uses_exactly_the_permitted_names(client, start, controller):
+    controller()
     start(module='dynamics_node.ros.effort_guard.main')
     check(client, read(GUARD_POLICY.read_text()).allowed, name='effort_guard')
 
@@ -154,11 +140,10 @@ def test_the_policy_fits_the_default_parameters():
     [topic] = [parameter.default for parameter in PARAMETERS if parameter.name == 'command_topic']
     profile = read(POLICY.read_text())
     assert f'/{topic}' in profile.allowed['publish']
-    assert (
-        profile.allowed['request']
-        == {f'/{topic.rpartition("/")[0]}/get_parameters'}
-        == {ON_ENABLE}
-    )
+    controller = topic.rpartition('/')[0]
+    assert profile.allowed['request'] == set(REQUESTS)
+    assert f'/{controller}/get_parameters' in REQUESTS
+    assert f'/{controller}/transition_event' in profile.allowed['subscribe']
 
 
 def test_the_document_names_the_enclave_of_the_file():

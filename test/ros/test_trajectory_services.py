@@ -56,21 +56,17 @@ def efforts(answer):
 
 def test_every_point_gets_its_effort_and_is_otherwise_unchanged(shared):
     time = np.linspace(0.0, 2.0, 21)
-    q, qd, qdd = motion(time)
+    states = motion(time)
     order = np.random.default_rng(1).permutation(N)
     names = [ARM.joint_names[i] for i in order]
-    sent = message(time, q[:, order], qd[:, order], qdd[:, order], names)
+    sent = message(time, *(values[:, order] for values in states), names)
     answer = ask(shared, sent)
     oracle = MujocoOracle(ARM7.read_text())
     expected = np.array(
-        [
-            oracle.inverse_dynamics(ARM.joint_names, *state)
-            for state in zip(q, qd, qdd, strict=True)
-        ]
+        [oracle.inverse_dynamics(ARM.joint_names, *state) for state in zip(*states, strict=True)]
     )[:, order]
-    np.testing.assert_allclose(
-        efforts(answer), expected, rtol=0, atol=1e-11 * np.abs(expected).max()
-    )
+    largest = np.abs(expected).max()
+    np.testing.assert_allclose(efforts(answer), expected, rtol=0, atol=1e-11 * largest)
     assert answer.message.split(';')[0] == 'all velocities and accelerations were given'
     assert answer.trajectory.joint_names == names
     for before, after in zip(sent.points, answer.trajectory.points, strict=True):
@@ -85,28 +81,26 @@ def test_missing_derivatives_are_those_of_a_spline_and_the_answer_says_so(shared
     time = np.linspace(0.0, 2.0, 201)
     q, qd, qdd = motion(time)
     exact = efforts(ask(shared, message(time, q, qd, qdd)))
+    largest = np.abs(exact).max()
     without = ask(shared, message(time, q))
-    assert 'velocities were not given' in without.message
-    assert 'accelerations were not given' in without.message
-    assert 'spline' in without.message
-    assert efforts(without) == pytest.approx(exact, abs=0.02 * np.abs(exact).max())
+    for text in ('velocities were not given', 'accelerations were not given', 'spline'):
+        assert text in without.message
+    assert efforts(without) == pytest.approx(exact, abs=0.02 * largest)
     half = ask(shared, message(time, q, qd))
     assert 'velocities were' not in half.message
-    assert efforts(half) == pytest.approx(exact, abs=1e-4 * np.abs(exact).max())
+    assert efforts(half) == pytest.approx(exact, abs=1e-4 * largest)
 
 
 def test_the_request_switches_gravity_and_friction(shared):
     time = np.linspace(0.0, 1.0, 5)
     q, qd, qdd = motion(time)
     trajectory = message(time, q, qd, qdd)
-    difference = efforts(ask(shared, trajectory)) - efforts(
-        ask(shared, trajectory, without_gravity=True)
-    )
-    assert difference == pytest.approx(ARM.gravity_torque(q), abs=1e-11)
+    plain = efforts(ask(shared, trajectory))
+    without = efforts(ask(shared, trajectory, without_gravity=True))
+    assert plain - without == pytest.approx(ARM.gravity_torque(q), abs=1e-11)
     answer = ask(shared, trajectory, with_friction=True)
     assert answer.message.split(';')[0] == 'with friction'
-    difference = efforts(answer) - efforts(ask(shared, trajectory))
-    assert difference == pytest.approx(ARM.friction_torque(qd), abs=1e-11)
+    assert efforts(answer) - plain == pytest.approx(ARM.friction_torque(qd), abs=1e-11)
 
 
 def test_points_and_joints_above_their_limit_are_named(shared):
@@ -193,16 +187,15 @@ POSITIONS, VELOCITIES, ACCELERATIONS = motion(TIME)
 FULL = (POSITIONS, VELOCITIES, ACCELERATIONS)
 
 
-def with_nan(values):
-    values = values.copy()
-    values[1, 2] = np.nan
-    return values
+POINT = 'trajectory.points[{}].{}: expected '
+FINITE = 'finite numbers, or none; got'
+WITH_NAN = [0.0, 0.0, np.nan, *[0.0] * (N - 3)]
 
 
-def changed(trajectory, **fields):
-    """Return a trajectory with other fields of its points: name_of_field=(point, value)."""
-    for name, (point, value) in fields.items():
-        setattr(trajectory.points[point], name, value)
+def changed(point, field, values, trajectory=None):
+    """Return a trajectory with another field of one point."""
+    trajectory = trajectory or message(TIME, *FULL)
+    setattr(trajectory.points[point], field, values)
     return trajectory
 
 
@@ -211,30 +204,18 @@ def changed(trajectory, **fields):
     [
         (JointTrajectory(), 'expected at least one point, got none'),
         (message([0.0, 1.0, 1.0], POSITIONS), 'time: point 2: expected more than 1.0 s'),
+        (changed(1, 'velocities', [1.0]), POINT.format(1, 'velocities') + '8 numbers for'),
+        (changed(2, 'positions', []), POINT.format(2, 'positions') + '8 numbers'),
         (
-            changed(message(TIME, POSITIONS, VELOCITIES), velocities=(1, [1.0])),
-            'trajectory.points[1].velocities: expected 8 numbers for',
-        ),
-        (
-            changed(message(TIME, POSITIONS), positions=(2, [])),
-            'trajectory.points[2].positions: expected 8 numbers',
-        ),
-        (
-            message(TIME, with_nan(POSITIONS), VELOCITIES, ACCELERATIONS),
-            'trajectory.points[1].positions: expected finite numbers, or none; got nan for '
-            + ARM.joint_names[2],
+            changed(1, 'positions', WITH_NAN),
+            POINT.format(1, 'positions') + f'{FINITE} nan for {ARM.joint_names[2]}',
         ),
         (
             # The first point has none: the place of the second is still named.
-            changed(
-                changed(message(TIME, *FULL), velocities=(0, [])), velocities=(1, [np.nan] * N)
-            ),
-            'trajectory.points[1].velocities: expected finite numbers, or none; got',
+            changed(1, 'velocities', WITH_NAN, changed(0, 'velocities', [])),
+            POINT.format(1, 'velocities') + FINITE,
         ),
-        (
-            message(TIME, POSITIONS, VELOCITIES, with_nan(ACCELERATIONS)),
-            'trajectory.points[1].accelerations: expected finite',
-        ),
+        (changed(1, 'accelerations', WITH_NAN), POINT.format(1, 'accelerations') + FINITE),
         (
             message(TIME, POSITIONS, names=[*ARM.joint_names[:-1], 'elbow_pich']),
             "'elbow_pich' is not a joint that can be moved, is 'elbow_pitch' meant?",
@@ -311,25 +292,21 @@ def test_the_largest_payload_over_a_trajectory_is_the_least_of_all_points(shared
     assert 'over the trajectory' in answer.message
 
 
-def test_the_largest_payload_depends_on_the_parameters_and_may_be_infinite(client, start):
+def test_the_largest_payload_depends_on_the_parameters_and_may_be_infinite(shared, change):
     low = ARM.effort_limits / 1.5
-    start(robot_description_file=ARM7, effort_limits=str(low.tolist()))
+    change('effort_limits', low.tolist())
     q = np.linspace(0.8, -0.6, N)
 
     def ask(link='hand', **fields):
-        return client.ask(GetMaxPayload, position=q.tolist(), link=link, **fields)
+        return shared.ask(GetMaxPayload, position=q.tolist(), link=link, **fields)
 
     def largest(limits):
         return float(ARM.max_payload(q, 'hand', effort_limits=limits).mass)
 
-    def scale(gains):
-        result = client.set_node_parameter('effort_scale', gains)
-        assert result.successful, result.reason
-
     assert ask().mass == pytest.approx(largest(low), rel=1e-12)
     assert 0.0 < ask().mass < 0.8 * largest(ARM.effort_limits)
     # The limits apply after the gains.
-    scale([1.25] * N)
+    change('effort_scale', [1.25] * N)
     answer = ask()
     assert answer.mass == pytest.approx(largest(low / 1.25), rel=1e-12)
     np.testing.assert_allclose(answer.effort_limits, low / 1.25)
@@ -345,7 +322,7 @@ def test_the_largest_payload_depends_on_the_parameters_and_may_be_infinite(clien
     assert ask().mass == 0.0
     assert client.set_node_parameter('effort_offset', []).successful
     # A joint without effort has no limit.
-    scale([1.25, 0.0, *[1.25] * (N - 2)])
+    change('effort_scale', [1.25, 0.0, *[1.25] * (N - 2)])
     answer = ask()
     assert answer.success and answer.limiting_joint != ARM.joint_names[1]
     assert np.isnan(answer.effort_limits[1])

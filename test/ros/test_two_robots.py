@@ -1,11 +1,7 @@
 """docs/two_robots.md: two simulated arms, two nodes, and nothing of one reaches the other."""
 
-import os
 from pathlib import Path
 import re
-import signal
-import subprocess
-import sys
 
 from dynamics_interfaces.msg import OutputState
 from dynamics_interfaces.srv import GetGravityTorque
@@ -13,7 +9,7 @@ import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool
-from support.processes import NodeProcess, PATIENCE
+from support.processes import NodeProcess
 
 DOCUMENT = (Path(__file__).parents[2] / 'docs' / 'two_robots.md').read_text()
 SIDES = ('left', 'right')
@@ -30,24 +26,12 @@ class Arm:
             Float64MultiArray, f'/{side}/forward_effort_controller/commands'
         )
         self.outputs = client.listen(OutputState, f'/{side}/dynamics_node/state', latched=True)
-        self.simulation = subprocess.Popen(
-            [
-                sys.executable,
-                '-m',
-                'dynamics_node.demo.simulated_robot',
-                '--ros-args',
-                '-r',
-                f'__ns:=/{side}',
-                '-p',
-                'rate:=100.0',
-            ],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            env=dict(os.environ),
+        namespace = f'__ns:=/{side}'
+        self.simulation = NodeProcess(
+            namespace, module='dynamics_node.demo.simulated_robot', rate=100.0
         )
         # A busy machine does not trip it.
-        self.node = NodeProcess(f'__ns:=/{side}', state_timeout=2.0)
+        self.node = NodeProcess(namespace, state_timeout=2.0)
 
     def call(self, kind, name, **request):
         """Call a service of this arm."""
@@ -59,17 +43,9 @@ class Arm:
 
     def close(self):
         """Press Ctrl-C in both; return the exit codes."""
-        codes = []
-        for process in (self.node.process, self.simulation):
-            process.send_signal(signal.SIGINT)
-        for process in (self.node.process, self.simulation):
-            try:
-                output, _ = process.communicate(timeout=PATIENCE)
-                assert 'Traceback' not in output, output
-                codes.append(process.returncode)
-            finally:
-                process.kill()
-        return codes
+        for process in (self.node, self.simulation):
+            process.close()
+        return [process.process.returncode for process in (self.node, self.simulation)]
 
 
 @pytest.fixture
@@ -79,8 +55,7 @@ def arms(client):
     client.until(lambda: all(arm.torques and arm.output() for arm in started))
     yield started
     for arm in started:
-        if arm.simulation.poll() is None:
-            arm.close()
+        arm.close()
 
 
 def test_enabling_one_robot_does_not_affect_the_other(client, arms):

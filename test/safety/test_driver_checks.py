@@ -23,13 +23,17 @@ def rest(check, effort, torque=G, seconds=2.5, start=0.0, velocity=0.001):
     return any(judged)
 
 
+@pytest.fixture
+def check():
+    return EffortPlausibility(NAMES, LIMITS)
+
+
 @pytest.mark.parametrize(
     'effort',
     [G, 1.4 * G, 0.7 * G, G + [15.0, 5.0, 5.0]],
     ids=['torque', 'payload', 'lighter', 'contact'],
 )
-def test_plausible_efforts_give_no_warning(effort):
-    check = EffortPlausibility(NAMES, LIMITS)
+def test_plausible_efforts_give_no_warning(check, effort):
     assert rest(check, effort)
     assert check.warning == ''
 
@@ -39,32 +43,28 @@ def test_plausible_efforts_give_no_warning(effort):
     [0.0 * G, -G, 0.08 * G, 1000.0 * G, [0.1, -0.2, 0.0]],
     ids=['zeros', 'other sign', 'current', 'thousandths', 'without gravity'],
 )
-def test_implausible_efforts_give_a_warning_with_both_numbers(effort):
-    check = EffortPlausibility(NAMES, LIMITS)
+def test_implausible_efforts_give_a_warning_with_both_numbers(check, effort):
     assert rest(check, effort)
     assert check.warning == (
         f'shoulder reports {effort[0] + 0.0:.4g} at rest, where the model says that -40 holds it'
     )
 
 
-def test_the_warning_disappears_with_plausible_efforts():
-    check = EffortPlausibility(NAMES, LIMITS)
+def test_the_warning_disappears_with_plausible_efforts(check):
     rest(check, 0.0 * G)
     assert check.warning
     assert rest(check, G, start=3.0)
     assert check.warning == ''
 
 
-def test_there_is_no_judgment_before_the_arm_has_rested():
-    check = EffortPlausibility(NAMES, LIMITS)
+def test_there_is_no_judgment_before_the_arm_has_rested(check):
     assert not rest(check, 0.0 * G, seconds=1.9)
     assert not check.update(2.0, np.array([0.0, 0.0, 0.1]), 0.0 * G, G)  # it moves
     assert not rest(check, 0.0 * G, start=2.1, seconds=1.9)
     assert check.warning == ''
 
 
-def test_forget_begins_a_new_rest_and_keeps_the_warning():
-    check = EffortPlausibility(NAMES, LIMITS)
+def test_forget_begins_a_new_rest_and_keeps_the_warning(check):
     rest(check, 0.0 * G)
     check.forget()
     rest(check, G, start=3.0, seconds=1.9)
@@ -86,15 +86,13 @@ def test_joints_with_little_gravity_torque_are_not_judged(torque, limits):
     assert check.warning
 
 
-def test_the_joint_nearest_to_its_limit_is_named():
-    check = EffortPlausibility(NAMES, LIMITS)
+def test_the_joint_nearest_to_its_limit_is_named(check):
     rest(check, [-40.0, 0.0, 0.0], np.array([-40.0, 30.0, 0.5]))
     assert check.warning.startswith('elbow reports 0 at rest')
 
 
-def test_noise_is_averaged():
+def test_noise_is_averaged(check):
     rng = np.random.default_rng(0)
-    check = EffortPlausibility(NAMES, LIMITS)
     judged = [check.update(0.002 * i, np.zeros(3), rng.normal(G, 30.0), G) for i in range(1200)]
     assert any(judged)
     assert check.warning == ''

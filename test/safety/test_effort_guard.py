@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 import pytest
 
 SETTINGS = GuardSettings(timeout=0.05, stop_ramp=0.5)
-FULL = (40.0, -8.0, 0.5)
+FULL, ZERO = (40.0, -8.0, 0.5), (0.0, 0.0, 0.0)
 PERIOD = 0.01
 
 
@@ -47,6 +47,11 @@ class Bench:
     def last(self):
         return self.outputs[-1][1] if self.outputs else None
 
+    @property
+    def values(self):
+        """The recorded outputs without their times."""
+        return [output for _, output in self.outputs]
+
     def tick(self):
         self._record(self.guard.tick(self.now))
         self._next_tick = self.now + self.guard.next_tick_in(self.now)
@@ -69,12 +74,14 @@ class Bench:
             self.send(*efforts)
             self.wait(period)
 
-    def start(self, efforts=FULL, ramp=0.5):
-        """Send the start ramp of the node."""
-        steps = round(ramp / PERIOD)
-        for i in range(1, steps + 1):
-            self.send(*(i / steps * effort for effort in efforts))
+    def ramp(self, efforts=FULL, steps=range(1, 51)):
+        """Send the start ramp of the node, or other fiftieths of the efforts."""
+        for i in steps:
+            self.send(*(i / 50 * effort for effort in efforts))
             self.wait(PERIOD)
+
+    def start(self):
+        self.ramp()
         assert self.state == 'ACTIVE'
 
     def freeze(self, seconds):
@@ -94,51 +101,62 @@ def bench():
 
 @pytest.fixture
 def active(bench):
+    """Return a bench whose guard passes commands; nothing recorded yet."""
     bench.start()
     bench.stream(0.2)
+    bench.outputs.clear()
     return bench
 
 
-def is_fading(outputs, start=FULL):
-    """Tell whether outputs decrease monotonically and in proportion."""
-    factors = [output[0] / start[0] for output in outputs]
-    return factors == sorted(factors, reverse=True) and all(
-        output == pytest.approx([factor * effort for effort in start])
-        for factor, output in zip(factors, outputs, strict=True)
-    )
+@pytest.fixture
+def faded(active):
+    """Return a bench after a fade; nothing recorded yet."""
+    active.wait(1.0)
+    assert active.state == 'FAULT'
+    active.outputs.clear()
+    return active
 
 
-# Passing -------------------------------------------------------------------------------------
+def assert_faded(bench, start=FULL):
+    """Check that the outputs decrease monotonically and in proportion, to zero."""
+    factors = [output[0] / start[0] for output in bench.values]
+    assert factors == sorted(factors, reverse=True)
+    for factor, output in zip(factors, bench.values, strict=True):
+        assert output == pytest.approx([factor * effort for effort in start])
+    assert bench.last == list(ZERO)
 
 
-def test_commands_pass_unchanged(bench):
+def assert_no_step(bench, start, scale=FULL):
+    """Check that no output is further from the one before than a step of the stop ramp."""
+    for before, after in itertools.pairwise([list(start), *bench.values]):
+        for a, b, largest in zip(before, after, scale, strict=True):
+            most = max(abs(largest), NEAR * max(map(abs, scale)))
+            assert abs(b - a) <= most * LONGEST_STEP / SETTINGS.stop_ramp + 1e-9
+
+
+# Commands that pass --------------------------------------------------------------------------
+
+
+def test_commands_pass_unchanged_also_with_a_step(bench):
     command = array('d', FULL)
     assert bench.guard.on_command(bench.now, command) is command
+    assert bench.send(-40.0, 8.0, 0.0) is not None
     assert bench.states == ['ACTIVE']
 
 
-def test_there_is_no_output_before_a_command_and_after_the_last_zero(bench):
+def test_there_is_no_output_without_commands_and_they_can_begin_again(bench):
     bench.wait(1.0)
     assert bench.outputs == []
     bench.start()
-    bench.send(0.0, 0.0, 0.0)
+    bench.send(*ZERO)
     count = len(bench.outputs)
     bench.wait(10.0)
     assert len(bench.outputs) == count
     assert bench.state == 'READY' and not bench.guard.has_effort
     assert bench.guard.fades == 0
-
-
-def test_commands_can_begin_again_after_an_end_at_zero(active):
-    active.send(0.0, 0.0, 0.0)
-    active.wait(0.3)
-    active.start()
-    assert active.last == list(FULL)
-    assert active.states == ['ACTIVE', 'READY', 'ACTIVE']
-
-
-def test_a_step_in_the_commands_passes(active):
-    assert active.send(-40.0, 8.0, 0.0) is not None
+    bench.start()
+    assert bench.last == list(FULL)
+    assert bench.states == ['ACTIVE', 'READY', 'ACTIVE']
 
 
 def test_an_effort_above_its_limit_is_clamped():
@@ -153,12 +171,9 @@ def test_an_effort_above_its_limit_is_clamped():
 
 def test_silence_fades_in_time_and_ends_in_fault(active):
     silent_since = active.now - PERIOD
-    before = len(active.outputs)
     active.wait(2.0)
-    fade = active.outputs[before:]
-    assert is_fading([output for _, output in fade])
-    assert active.last == [0.0, 0.0, 0.0]
-    begin, end = fade[0][0] - silent_since, fade[-1][0] - silent_since
+    assert_faded(active)
+    begin, end = (active.outputs[i][0] - silent_since for i in (0, -1))
     assert SETTINGS.timeout < begin <= SETTINGS.timeout + 2 * CONFIRM_AFTER + FADE_PERIOD + 1e-6
     assert end <= SETTINGS.timeout + 2 * CONFIRM_AFTER + SETTINGS.stop_ramp + 2 * FADE_PERIOD
     assert active.state == 'FAULT'
@@ -176,14 +191,13 @@ def test_silence_fades_in_time_and_ends_in_fault(active):
     ],
 )
 def test_an_invalid_command_counts_as_silence(active, bad, kind):
-    before = len(active.outputs)
     for _ in range(100):
         assert active.send(*bad) is None
         active.wait(PERIOD)
-    assert active.state == 'FAULT' and active.last == [0.0, 0.0, 0.0]
+    assert_faded(active)
+    assert active.state == 'FAULT'
     assert active.guard.refused[kind] == 100
     assert 'no valid command for 0.05' in active.guard.reason and kind in active.guard.reason
-    assert is_fading([output for _, output in active.outputs[before:]])
 
 
 def test_the_number_of_joints_of_the_controller_counts_before_the_first_command(bench):
@@ -199,7 +213,7 @@ def test_rate_limits_make_a_fade_longer_but_not_endless():
     assert bench.guard.has_effort
     bench.wait(0.3)
     assert not bench.guard.has_effort
-    steps = [b[0] - a[0] for (_, a), (_, b) in itertools.pairwise(bench.outputs[50:])]
+    steps = [b[0] - a[0] for a, b in itertools.pairwise(bench.values[50:])]
     assert min(steps) >= -20.0 * LONGEST_STEP
     slow = Bench(replace(SETTINGS, rate_limits=(1e-9,) * 3))
     slow.start()
@@ -216,9 +230,7 @@ def test_a_short_silence_is_bridged_without_a_step(active):
     active.stream(0.2)
     assert active.state == 'ACTIVE' and active.last == list(FULL)
     assert active.guard.bridged == 1
-    rate = max(abs(effort) for effort in FULL) / SETTINGS.stop_ramp
-    outputs = [output[0] for _, output in active.outputs]
-    assert max(abs(b - a) for a, b in itertools.pairwise(outputs[60:])) <= rate * LONGEST_STEP
+    assert_no_step(active, FULL)
 
 
 def test_the_period_of_slow_commands_is_reported(bench):
@@ -242,29 +254,15 @@ def test_a_command_waiting_behind_a_late_tick_is_in_time(active):
 # After a fade --------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def faded(active):
-    active.wait(1.0)
-    assert active.state == 'FAULT'
-    return active
-
-
 def test_commands_that_go_on_after_a_fade_do_not_pass(faded):
-    before = len(faded.outputs)
     faded.stream(1.0)
-    assert len(faded.outputs) == before
+    assert faded.outputs == []
     assert faded.state == 'FAULT'
     assert 'commands begin with up to 40, too far from zero' in faded.guard.reason
     assert faded.states.count('FAULT') == 2  # not repeated with every command
-
-
-def test_their_ramp_to_zero_does_not_pass_but_the_start_after_it_does(faded):
-    faded.stream(0.2)
-    before = len(faded.outputs)
-    for i in range(50, -1, -1):
-        faded.send(*(i / 50 * effort for effort in FULL))
-        faded.wait(PERIOD)
-    assert [output for _, output in faded.outputs[before:]] == [[0.0] * 3]
+    # Nor does their ramp to zero, but the start after it does.
+    faded.ramp(steps=range(50, -1, -1))
+    assert faded.values == [list(ZERO)]
     faded.wait(0.2)
     assert faded.state == 'READY' and faded.guard.reason.endswith('armed again')
     faded.start()
@@ -279,22 +277,13 @@ def test_a_new_source_that_begins_near_zero_passes(faded):
     assert faded.last == list(FULL)
 
 
-def test_zeros_between_full_commands_do_not_rearm(faded):
-    for _ in range(20):
-        faded.send(0.0, 0.0, 0.0)
-        assert faded.send(*FULL) is None
-        faded.wait(PERIOD)
-    assert faded.state == 'FAULT'
-
-
 def test_commands_that_go_on_late_in_a_fade_do_not_pass(active):
     active.wait(0.05 + 0.25)
     assert active.state == 'STOPPING'
     assert active.send(*FULL) is None
-    before = len(active.outputs)
     active.stream(1.0)
-    assert active.state == 'FAULT' and active.last == [0.0] * 3
-    assert is_fading([output for _, output in active.outputs[before:]])
+    assert_faded(active)
+    assert active.state == 'FAULT'
     assert active.guard.refused['during a fade'] > 10
 
 
@@ -302,14 +291,14 @@ def test_commands_pass_by_a_ramp_after_reset(faded):
     faded.stream(0.1)
     success, message = faded.guard.reset(faded.now)
     assert success and 'within 0.5 s' in message
-    before = len(faded.outputs)
     faded.stream(1.0)
     assert faded.state == 'ACTIVE' and faded.last == list(FULL)
-    outputs = [[0.0] * 3] + [output for _, output in faded.outputs[before:]]
-    steps = [b[0] - a[0] for a, b in itertools.pairwise(outputs)]
-    assert min(steps) >= 0.0
-    assert max(steps) <= FULL[0] * LONGEST_STEP / SETTINGS.stop_ramp + 1e-9
+    assert_no_step(faded, ZERO)
+    efforts = [output[0] for output in faded.values]
+    assert efforts == sorted(efforts)
     assert 'STARTING' in faded.states
+    success, message = faded.guard.reset(faded.now)
+    assert not success and 'nothing to reset: ACTIVE' in message
 
 
 def test_a_silence_in_the_ramp_after_reset_cancels_the_reset(faded):
@@ -320,12 +309,7 @@ def test_a_silence_in_the_ramp_after_reset_cancels_the_reset(faded):
     assert faded.state == 'FAULT'
 
 
-def test_reset_without_a_fault_is_refused(active):
-    success, message = active.guard.reset(active.now)
-    assert not success and 'nothing to reset: ACTIVE' in message
-
-
-# The begin of commands -----------------------------------------------------------------------
+# Start of the commands -----------------------------------------------------------------------
 
 
 def test_a_guard_started_after_the_commands_does_not_pass_them():
@@ -336,7 +320,7 @@ def test_a_guard_started_after_the_commands_does_not_pass_them():
     bench.guard.source_appeared(bench.now)
     bench.stream(0.3)
     assert bench.outputs == []
-    bench.send(0.0, 0.0, 0.0)
+    bench.send(*ZERO)
     bench.wait(0.3)
     bench.start()
     assert bench.last == list(FULL)
@@ -355,27 +339,25 @@ def test_an_obstacle_refuses_first_efforts_but_not_zeros():
     bench = Bench(obstacle=lambda: reasons[0])
     assert bench.send(0.1, 0.0, 0.0) is None
     assert bench.state == 'FAULT' and bench.guard.reason.startswith('nothing listens')
-    assert bench.send(0.0, 0.0, 0.0) is not None
+    assert bench.send(*ZERO) is not None
     reasons[0] = ''
     bench.wait(0.3)
     assert bench.state == 'READY'
     bench.start()
 
 
-# End and standstill of the guard ------------------------------------------------------------
+# End and suspension of the guard -------------------------------------------------------------
 
 
 @pytest.mark.parametrize('within', [2.5, 0.2])
 def test_end_fades_and_refuses_all_commands(active, within):
     begin = active.now
     active.guard.end(begin, within, 'SIGTERM')
-    before = len(active.outputs)
     active.tick()
     active.stream(1.0)
-    fade = active.outputs[before:]
-    assert is_fading([output for _, output in fade])
+    assert_faded(active)
     assert not active.guard.has_effort and active.state == 'READY'
-    assert fade[-1][0] - begin <= min(within, SETTINGS.stop_ramp) + 2 * FADE_PERIOD
+    assert active.outputs[-1][0] - begin <= min(within, SETTINGS.stop_ramp) + 2 * FADE_PERIOD
 
 
 def test_a_second_end_shortens_the_fade(active):
@@ -385,7 +367,7 @@ def test_a_second_end_shortens_the_fade(active):
     active.guard.end(active.now, 0.1, 'SIGINT again')
     active.wait(0.13)
     assert not active.guard.has_effort
-    assert active.guard.drop() == [0.0] * 3
+    assert active.guard.drop() == list(ZERO)
 
 
 def test_end_without_effort_has_no_effect(bench):
@@ -396,19 +378,15 @@ def test_end_without_effort_has_no_effect(bench):
 
 def test_after_a_standstill_of_the_guard_it_approaches_the_commands(active):
     active.freeze(1.0)
-    before = len(active.outputs)
     other = (20.0, 8.0, 0.0)
     active.send(*other)
     assert active.state == 'STARTING' and 'stood still for 1.0' in active.guard.reason
     active.tick()
     active.stream(1.2, other)
     assert active.state == 'ACTIVE' and active.last == list(other)
-    outputs = [FULL] + [output for _, output in active.outputs[before:]]
-    for a, b in itertools.pairwise(outputs):
-        for last, new, largest in zip(a, b, FULL):
-            scale = max(abs(largest), NEAR * 40.0)
-            assert abs(new - last) <= scale * LONGEST_STEP / SETTINGS.stop_ramp + 1e-9
+    assert_no_step(active, FULL)
     assert active.guard.stalls == 1
+    assert OWN_STALL >= 2 * MAX_TICK  # a tick is no standstill
 
 
 def test_after_a_standstill_of_the_guard_unchanged_commands_pass(active):
@@ -416,16 +394,6 @@ def test_after_a_standstill_of_the_guard_unchanged_commands_pass(active):
     active.tick()
     active.send(*FULL)
     assert active.state == 'ACTIVE' and active.last == list(FULL)
-
-
-def test_a_standstill_in_a_fade_makes_no_step(active):
-    active.wait(0.1)
-    before = active.last
-    active.freeze(1.0)
-    active.tick()
-    assert before[0] - active.last[0] <= FULL[0] * LONGEST_STEP / SETTINGS.stop_ramp + 1e-9
-    active.wait(1.0)
-    assert active.last == [0.0] * 3
 
 
 def test_a_failing_observer_has_no_effect():
@@ -516,33 +484,21 @@ def test_whatever_comes_no_effort_starts_by_itself_and_every_silence_ends_at_zer
     events, limits, rates
 ):
     judge = Judge(replace(SETTINGS, effort_limits=limits, rate_limits=rates))
+    actions = {
+        'send': lambda value: judge.send(*value),
+        'stream': lambda value: judge.stream(value[1] * PERIOD, value[0]),
+        'start': judge.ramp,
+        'wait': judge.wait,
+        'freeze': judge.freeze,
+        'late': lambda value: (judge.freeze(value), judge.tick()),
+        'reset': lambda _: judge.guard.reset(judge.now),
+        'source': lambda _: judge.guard.source_appeared(judge.now),
+    }
     for kind, value in events:
-        if kind == 'send':
-            judge.send(*value)
-        elif kind == 'stream':
-            judge.stream(value[1] * PERIOD, value[0])
-        elif kind == 'start':
-            for i in range(1, 51):
-                judge.send(*(i / 50 * effort for effort in value))
-                judge.wait(PERIOD)
-        elif kind == 'wait':
-            judge.wait(value)
-        elif kind == 'freeze':
-            judge.freeze(value)
-        elif kind == 'late':
-            judge.freeze(value)
-            judge.tick()
-        elif kind == 'reset':
-            judge.guard.reset(judge.now)
-        else:
-            judge.guard.source_appeared(judge.now)
+        actions[kind](value)
     longest = max(
         [SETTINGS.stop_ramp] + [abs(effort) / rate for effort, rate in zip(judge.force, rates)]
     )
     judge.wait(SETTINGS.timeout + MAX_TICK + CONFIRM_AFTER + longest + 3 * FADE_PERIOD)
     assert judge.force == [0.0, 0.0] and not judge.guard.has_effort
     assert judge.state in ('READY', 'FAULT')
-
-
-def test_a_standstill_is_longer_than_the_longest_tick():
-    assert OWN_STALL >= 2 * MAX_TICK

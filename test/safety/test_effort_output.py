@@ -1,6 +1,6 @@
 """Ramps, steps and stops, with a simulated clock."""
 
-from dynamics_node.safety import EffortLimiter, EffortOutput, OutputSettings, OutputState
+from dynamics_node.safety import EffortLimiter, EffortOutput, OutputSettings
 from dynamics_node.safety.effort_output import (
     LONGEST_SATURATION,
     MAX_FAULT_RAMP,
@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 LIMITS, RATES = np.array([10.0, 5.0]), np.array([100.0, 50.0])
-TORQUE = np.array([4.0, -2.0])
+TORQUE, UNKNOWN = np.array([4.0, -2.0]), np.full(2, np.nan)
 PERIOD = 0.01
 
 
@@ -72,13 +72,6 @@ class Bench:
         return self.output.machine.name
 
 
-def test_there_is_no_command_while_off():
-    bench = Bench()
-    assert bench.follow() is None
-    assert bench.tick(0.1).size == 0
-    assert bench.name == 'READY'
-
-
 def test_the_start_ramps_from_zero_to_the_torque():
     bench = Bench().start()
     bench.follow(seconds=0.25)
@@ -132,51 +125,45 @@ def test_a_step_is_limited_by_nominal_periods_and_not_by_the_length_of_a_gap():
     np.testing.assert_allclose(step, RATES * MAX_PERIODS * 0.002)
 
 
-def test_a_pause_of_the_process_does_not_skip_a_ramp():
-    for begin in (lambda bench: bench.start(), lambda bench: bench.active()):
-        bench = begin(Bench())
-        bench.follow()
-        if bench.name == 'ACTIVE':
-            bench.output.stop(bench.now, 'test')
-            bench.tick(0.05)
-        bench.now += 5.0
-        before = bench.sent[-1]
-        if bench.name == 'STOPPING':
-            bench.tick(STOP_PERIOD)
-        else:
-            bench.follow()
-        assert (np.abs(bench.sent[-1] - before) <= 2.1 * MAX_RAMP_STEP * np.abs(TORQUE)).all()
+@pytest.mark.parametrize('is_stopping', [False, True], ids=['start', 'stop'])
+def test_a_pause_of_the_process_does_not_skip_a_ramp(is_stopping):
+    bench = Bench().active() if is_stopping else Bench().start()
+    bench.follow()
+    if is_stopping:
+        bench.output.stop(bench.now, 'test')
+        bench.tick(0.05)
+    bench.now += 5.0
+    before = bench.sent[-1]
+    bench.tick(STOP_PERIOD) if is_stopping else bench.follow()
+    assert (np.abs(bench.sent[-1] - before) <= 2.1 * MAX_RAMP_STEP * np.abs(TORQUE)).all()
 
 
 def test_a_stop_ramps_to_zero_and_ends_with_zeros():
     bench = Bench().active()
-    bench.output.stop(bench.now, 'test')
+    bench.output.stop(bench.now, 'disabled on request')
     commands = bench.tick(1.5)
     np.testing.assert_array_equal(commands[-1], [0.0, 0.0])
     assert (np.diff(np.abs(commands[:, 0])) <= 0).all()
     assert len(commands) * STOP_PERIOD == pytest.approx(1.0, abs=0.03)
     assert bench.states[-1] == ('READY', [0.0, 0.0])
+    assert bench.output.machine.reason == 'stopped: disabled on request'
 
 
-@pytest.mark.parametrize('rates', [RATES, np.full(2, 1e-6)])
+@pytest.mark.parametrize(
+    'limits, rates',
+    [(LIMITS, RATES), (LIMITS, np.full(2, 1e-6)), (LIMITS / 100, RATES / 100), (UNKNOWN, UNKNOWN)],
+    ids=['limits', 'small rates', 'lower limits', 'nan'],
+)
 @pytest.mark.parametrize(
     'behavior, ramp', [('zero', 60.0), ('ramp_to_zero', 0.0), ('ramp_to_zero', 0.3)]
 )
-def test_every_stop_ends_in_time_for_any_rate_limits(behavior, ramp, rates):
+@pytest.mark.parametrize('is_fault', [False, True], ids=['disabled', 'fault'])
+def test_every_stop_ends_in_time_for_any_limits(behavior, ramp, limits, rates, is_fault):
     bench = Bench(behavior, stop_ramp=ramp).active()
-    bench.output.set_limiter(EffortLimiter(LIMITS, rates, np.ones(2)))
-    bench.output.stop(bench.now, 'test')
+    bench.output.set_limiter(EffortLimiter(limits, rates, np.ones(2)))
+    bench.output.stop(bench.now, 'test', is_fault=is_fault)
     bench.tick(ZERO_WITHIN + 0.05)
-    assert bench.name == 'READY'
-    np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
-
-
-def test_lower_limits_do_not_slow_the_stop():
-    bench = Bench().active()
-    bench.output.set_limiter(EffortLimiter(LIMITS / 100, RATES / 100, np.ones(2)))
-    bench.output.stop(bench.now, 'test', is_fault=True)
-    bench.tick(1.1)
-    assert bench.name == 'FAULT'
+    assert bench.name == ('FAULT' if is_fault else 'READY')
     np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
 
 
@@ -202,7 +189,8 @@ def test_a_second_stop_can_only_shorten_the_first():
     np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
 
 
-def test_hold_leaves_the_last_command_in_force_and_is_a_state_of_its_own():
+@pytest.fixture
+def holding():
     bench = Bench('hold').active()
     count = len(bench.sent)
     bench.output.stop(bench.now, 'stale', is_fault=True, may_hold=True)
@@ -210,38 +198,29 @@ def test_hold_leaves_the_last_command_in_force_and_is_a_state_of_its_own():
     assert bench.output.has_effort_in_force
     assert bench.tick(0.5).size == 0
     assert len(bench.sent) == count
-    # Released by the stop ramp; the fault latched meanwhile stays.
-    bench.output.stop(bench.now, 'disabled on request')
-    commands = bench.tick(1.1)
+    return bench
+
+
+def test_held_efforts_are_released_by_the_stop_ramp_and_the_fault_stays(holding):
+    holding.output.stop(holding.now, 'disabled on request')
+    commands = holding.tick(1.1)
     assert (np.abs(np.diff(commands[:, 0])) <= 0.05 * TORQUE[0]).all()
-    assert bench.name == 'FAULT'
-    assert not bench.output.has_effort_in_force
+    assert holding.name == 'FAULT'
+    assert not holding.output.has_effort_in_force
 
 
-def test_faults_are_not_held():
-    bench = Bench('hold').active()
-    bench.output.stop(bench.now, 'runaway', is_fault=True)
-    bench.tick(1.1)
-    assert bench.name == 'FAULT'
-    np.testing.assert_array_equal(bench.sent[-1], [0.0, 0.0])
+def test_a_start_after_hold_begins_at_the_held_efforts(holding):
+    holding.now += 4.0
+    holding.start().follow()
+    np.testing.assert_allclose(holding.sent[-1], TORQUE)
+    holding.follow(seconds=0.6)
+    assert holding.name == 'ACTIVE'
+    assert holding.output.machine.fault == ''
 
 
-def test_a_start_after_hold_begins_at_the_held_efforts():
-    bench = Bench('hold').active()
-    bench.output.stop(bench.now, 'stale', is_fault=True, may_hold=True)
-    bench.now += 4.0
-    bench.start().follow()
-    np.testing.assert_allclose(bench.sent[-1], TORQUE)
-    bench.follow(seconds=0.6)
-    assert bench.name == 'ACTIVE'
-    assert bench.output.machine.fault == ''
-
-
-def test_held_efforts_belong_to_their_joints():
-    bench = Bench('hold').active()
-    bench.output.stop(bench.now, 'stale', may_hold=True)
-    bench.output.set_limiter(EffortLimiter(LIMITS, RATES, np.ones(2), ('other', 'joints')))
-    np.testing.assert_array_equal(bench.output.limiter.last, [0.0, 0.0])
+def test_held_efforts_belong_to_their_joints(holding):
+    holding.output.set_limiter(EffortLimiter(LIMITS, RATES, np.ones(2), ('other', 'joints')))
+    np.testing.assert_array_equal(holding.output.limiter.last, [0.0, 0.0])
 
 
 def test_an_effort_that_is_not_finite_stops_from_the_last_valid_one():
@@ -252,14 +231,6 @@ def test_an_effort_that_is_not_finite_stops_from_the_last_valid_one():
     np.testing.assert_allclose(commands[0], TORQUE, rtol=0.05)
     assert bench.name == 'FAULT'
     assert 'invalid effort: expected finite efforts' in bench.output.machine.reason
-
-
-def test_a_stop_ends_even_with_limits_that_are_nan():
-    bench = Bench().active()
-    bench.output.set_limiter(EffortLimiter(np.full(2, np.nan), np.full(2, np.nan), np.ones(2)))
-    bench.output.stop(bench.now, 'test', is_fault=True)
-    bench.tick(1.1)
-    assert bench.name == 'FAULT'
 
 
 def test_a_change_goes_out_over_the_start_ramp_while_the_arm_is_followed():
@@ -352,11 +323,3 @@ def test_the_next_tick_is_that_of_a_ramp_or_none():
     assert bench.output.next_tick_in(bench.now) == np.inf
     bench.output.stop(bench.now, 'test')
     assert bench.output.next_tick_in(bench.now) == STOP_PERIOD
-
-
-def test_every_stop_reason_is_reported():
-    bench = Bench().active()
-    bench.output.stop(bench.now, 'disabled on request')
-    bench.tick(1.1)
-    assert bench.output.machine.reason == 'stopped: disabled on request'
-    assert OutputState[bench.name] == OutputState.READY

@@ -89,11 +89,11 @@ class Arm:
         self.path.monitored(now)
         return self.publish(now, self.path.tick(now))
 
-    def run(self, now, seconds, position, period=0.01, **message):
-        """Process states and tick for some time; return the time."""
-        for _ in range(round(seconds / period)):
+    def run(self, now, seconds, position, period=0.01, clock=None, **message):
+        """Process states and tick for some time; return the time. clock: of the i-th state, ns."""
+        for i in range(1, round(seconds / period) + 1):
             now += period
-            self.take(now, position, **message)
+            self.take(now, position, clock=clock and clock(i), **message)
             self.tick(now)
         return now
 
@@ -163,26 +163,33 @@ def test_an_arm_above_its_velocity_limits_stops_at_once():
 
 
 def test_stale_joint_states_stop_by_the_ramp_with_both_numbers():
-    arm, _ = active()
-    arm.tick(1.09)
+    arm, state = active()
+    arm.take(1.01, state)
+    assert arm.path.next_tick_in(1.04) == pytest.approx(0.07)  # when it becomes stale
+    arm.tick(1.10)
     assert arm.name == 'ACTIVE'
-    arm.tick(1.11)
+    arm.tick(1.12)
     assert arm.fault == 'joint_states stale: last 0.110 s ago, limit 0.100 s'
     assert arm.name == 'STOPPING'
+    assert arm.path.next_tick_in(1.12) == STOP_PERIOD
 
 
-def test_only_stale_joint_states_lead_to_hold():
-    def stopped(cause):
-        arm, state = active(behavior='hold')
-        cause(arm, state)
-        return arm.name
-
-    assert stopped(lambda arm, _: arm.tick(1.2)) == 'HOLDING'
-    assert stopped(lambda arm, state: arm.take(1.01, state, [0.0, 4.0])) == 'STOPPING'
-    assert stopped(lambda arm, _: arm.path.disable(1.01, 'request')) == 'STOPPING'
-    assert stopped(lambda arm, _: arm.path.fault(1.01, 'rival')) == 'STOPPING'
-    assert stopped(lambda arm, _: arm.path.fail(1.01, 'error')) == 'STOPPING'
-    assert stopped(lambda arm, _: arm.path.close(1.01, 'SIGTERM', 2.5)) == 'STOPPING'
+@pytest.mark.parametrize(
+    ('cause', 'state'),
+    [
+        (lambda arm, _: arm.tick(1.2), 'HOLDING'),
+        (lambda arm, state: arm.take(1.01, state, [0.0, 4.0]), 'STOPPING'),
+        (lambda arm, _: arm.path.disable(1.01, 'request'), 'STOPPING'),
+        (lambda arm, _: arm.path.fault(1.01, 'conflicting publisher'), 'STOPPING'),
+        (lambda arm, _: arm.path.fail(1.01, 'error'), 'STOPPING'),
+        (lambda arm, _: arm.path.close(1.01, 'SIGTERM', 2.5), 'STOPPING'),
+    ],
+    ids=['stale', 'runaway', 'disable', 'fault', 'error', 'signal'],
+)
+def test_only_stale_joint_states_lead_to_hold(cause, state):
+    arm, position = active(behavior='hold')
+    cause(arm, position)
+    assert arm.name == state
 
 
 def test_saturation_is_not_held():
@@ -194,20 +201,24 @@ def test_saturation_is_not_held():
     np.testing.assert_array_equal(arm.sent[-1], [0.0, 0.0])
 
 
-def test_disable_and_a_runaway_release_the_held_efforts():
-    arm, _ = active(behavior='hold')
+@pytest.mark.parametrize(
+    'release',
+    [
+        lambda arm, _: arm.path.disable(1.3, 'disabled on request'),
+        lambda arm, state: arm.take(1.3, state, [0.0, 3.5]),
+    ],
+    ids=['disable', 'runaway'],
+)
+def test_disable_and_a_runaway_release_the_held_efforts(release):
+    arm, state = active(behavior='hold')
     arm.tick(1.2)
     assert arm.name == 'HOLDING'
-    assert arm.path.disable(1.3, 'disabled on request')
+    release(arm, state)
+    assert arm.name == 'STOPPING'
     for i in range(120):
         arm.tick(1.3 + 0.01 * i)
     np.testing.assert_array_equal(arm.sent[-1], [0.0, 0.0])
     assert not arm.path.disable(3.0, 'again')
-
-    arm, state = active(behavior='hold')
-    arm.tick(1.2)
-    arm.take(1.3, state, [0.0, 3.5])
-    assert arm.name == 'STOPPING'
 
 
 def test_enable_starts_from_the_held_efforts_unless_the_measured_ones_differ():
@@ -243,42 +254,41 @@ def test_a_delayed_command_is_not_sent():
     assert arm.name == 'STOPPING'
 
 
-def test_a_search_or_a_watchdog_that_no_longer_runs_is_a_fault():
+@pytest.mark.parametrize(
+    ('missing', 'reason'),
+    [
+        ('search', 'the search for other publishers and controllers has not run'),
+        ('watchdog', 'the watchdog has not run for'),
+    ],
+)
+def test_a_search_or_a_watchdog_that_no_longer_runs_is_a_fault(missing, reason):
     arm, state = active()
-    now = 1.0
-    for _ in range(round((MAX_MONITOR_AGE + 0.2) / 0.01)):
-        now += 0.01
+    for now in 1.0 + 0.01 * np.arange(1, round((MAX_MONITOR_AGE + 0.4) / 0.01)):
         arm.take(now, state)
-        arm.publish(now, arm.path.tick(now))  # ticks, but no search for other publishers
-    assert arm.fault.startswith('the search for other publishers and controllers has not run')
+        if missing == 'search':
+            arm.publish(now, arm.path.tick(now))
+        else:
+            arm.path.monitored(now)
+    assert arm.fault.startswith(reason)
 
+
+@pytest.mark.parametrize(
+    ('change', 'between', 'end'),
+    [
+        # compensate.gravity switched off
+        ({'gain': 0.0}, (2.4, 2.7), [0.0, 0.0]),
+        ({'limits': np.array([1.0, 1.0])}, (2.0, 4.5), [1.0, 1.0]),
+    ],
+    ids=['model', 'limits'],
+)
+def test_a_change_goes_out_over_the_start_ramp(change, between, end):
     arm, state = active()
-    now = 1.0
-    for _ in range(round((MAX_MONITOR_AGE + 0.4) / 0.01)):
-        now += 0.01
-        arm.path.monitored(now)
-        arm.take(now, state)
-    assert arm.fault.startswith('the watchdog has not run for')
-
-
-def test_a_change_of_the_model_goes_out_over_the_start_ramp():
-    arm, state = active()
-    before = arm.sent[-1]
-    arm.configure(gain=0.0, now=1.0)  # compensate.gravity switched off
+    arm.configure(**change, now=1.0)
     arm.run(1.0, 0.25, state)
-    np.testing.assert_allclose(arm.sent[-1], 0.5 * before, rtol=0.06)
+    assert between[0] < arm.sent[-1][0] < between[1]
     arm.run(1.25, 0.3, state)
-    np.testing.assert_allclose(arm.sent[-1], [0.0, 0.0])
+    np.testing.assert_allclose(arm.sent[-1], end)
     assert arm.states == ['STARTING', 'ACTIVE']
-
-
-def test_lower_limits_go_out_over_the_start_ramp():
-    arm, state = active()
-    arm.configure(limits=np.array([1.0, 1.0]), now=1.0)
-    arm.run(1.0, 0.25, state)
-    assert 2.0 < arm.sent[-1][0] < 4.5
-    arm.run(1.25, 0.3, state)
-    np.testing.assert_allclose(arm.sent[-1], [1.0, 1.0])
 
 
 def test_the_same_parameters_again_change_nothing():
@@ -290,42 +300,32 @@ def test_the_same_parameters_again_change_nothing():
         arm.tick(1.01 + 0.01 * i)
 
 
-def test_the_output_cannot_start_after_close():
+def test_a_second_close_shortens_the_stop_and_the_output_cannot_start_after_it():
     arm, state = active()
-    arm.path.close(1.01, 'SIGTERM', 2.5)
-    now = arm.run(1.01, 1.2, state)
+    arm.path.close(1.0, 'SIGINT', 2.5)
+    now = arm.run(1.0, 0.2, state)
+    arm.path.close(now, 'SIGINT', 0.3)
+    now = arm.run(now, 0.4, state)
     assert arm.name == 'READY'
     assert not arm.path.enable(now)
     assert arm.name == 'READY'
 
 
-def test_a_second_close_shortens_the_stop():
-    arm, state = active()
-    arm.path.close(1.0, 'SIGINT', 2.5)
-    now = arm.run(1.0, 0.2, state)
-    arm.path.close(now, 'SIGINT', 0.3)
-    arm.run(now, 0.4, state)
-    assert arm.name == 'READY'
-
-
-def test_a_deactivated_controller_ends_the_output_and_the_next_start_begins_there():
+@pytest.mark.parametrize('held', [True, False], ids=['held', 'set to zero'])
+def test_after_a_deactivation_the_next_start_begins_at_the_efforts_in_force(held):
     arm, state = active()
     last = arm.sent[-1]
+    in_force = last if held else np.zeros(2)
     arm.path.lose_controller(1.01, '/effort_controller is inactive')
     assert arm.name == 'FAULT'
     assert arm.fault == (
         '/effort_controller is inactive; the last efforts sent, which the '
         'hardware may hold: elbow: 5.09901, wrist: 1.6'
     )
-    assert arm.run(1.01, 0.5, state, efforts=last) and arm.sent[-1] is last
+    assert arm.run(1.01, 0.5, state, efforts=in_force) and arm.sent[-1] is last
     assert arm.path.enable(1.6)
-    np.testing.assert_allclose(arm.take(1.61, state, efforts=last), last)
-    # A controller that sets the hardware to zero: the ramp begins at zero.
-    arm, state = active()
-    arm.path.lose_controller(1.01, '/effort_controller is inactive')
-    arm.run(1.01, 0.5, state, efforts=[0.0, 0.0])
-    assert arm.path.enable(1.6)
-    assert np.abs(arm.take(1.61, state)).max() < 0.2
+    first = arm.take(1.61, state, efforts=in_force)
+    np.testing.assert_allclose(first, in_force, atol=0.0 if held else 0.2)
 
 
 def test_a_controller_lost_during_the_stop_of_a_fault_is_named_after_the_fault():
@@ -350,23 +350,26 @@ def test_a_clock_that_goes_back_drops_the_state_and_ramps_again():
     arm, (elbow, wrist) = active()
     last = arm.path.output.limiter.last
     # A simulation restarts with the arm elsewhere: this is no jump.
-    command = arm.take(1.01, [-elbow, -wrist], clock=3 * SECOND)
+    elsewhere = [-elbow, -wrist]
+    command = arm.take(1.01, elsewhere, clock=3 * SECOND)
     assert arm.name == 'STARTING'
     assert 'the clock went back by 98.000 s' in arm.path.output.machine.reason
     np.testing.assert_array_equal(command, last)
-    for i in range(1, 70):
-        command = arm.take(1.01 + 0.01 * i, [-elbow, -wrist], clock=3 * SECOND + i * SECOND // 100)
-        arm.tick(1.01 + 0.01 * i)
+    arm.run(1.01, 0.69, elsewhere, clock=lambda i: 3 * SECOND + i * SECOND // 100)
     assert arm.name == 'ACTIVE'
-    np.testing.assert_allclose(command, [30.0 * math.cos(elbow), -8.0 * wrist])
+    np.testing.assert_allclose(arm.sent[-1], [30.0 * math.cos(elbow), -8.0 * wrist])
 
 
 def test_repeated_clock_resets_are_no_fresh_measurement():
     arm, (elbow, _) = active()
-    for i in range(1, 20):
-        clock = (50 - i) * SECOND if i <= 3 else 47 * SECOND + i * SECOND // 100
-        assert arm.take(1.0 + 0.01 * i, [elbow], names=['elbow'], clock=clock) is None
-        arm.tick(1.0 + 0.01 * i)
+    sent = len(arm.sent)
+
+    def clock(i):
+        return (50 - i) * SECOND if i <= 3 else 47 * SECOND + i * SECOND // 100
+
+    arm.run(1.0, 0.08, [elbow], names=['elbow'], clock=clock)
+    assert len(arm.sent) == sent
+    arm.run(1.08, 0.11, [elbow], names=['elbow'], clock=lambda i: clock(i + 8))
     assert arm.name == 'STOPPING'
     assert 'stale' in arm.fault
 
@@ -383,10 +386,8 @@ def test_while_the_simulation_pauses_the_steady_clock_goes_on():
 
 
 def test_two_alternating_clocks_do_not_freeze_the_effort():
-    arm, (elbow, wrist) = active()
-    for i in range(1, 40):
-        arm.take(1.0 + 0.01 * i, [elbow, wrist], clock=(50 - i % 2) * SECOND)
-        arm.tick(1.0 + 0.01 * i)
+    arm, state = active()
+    arm.run(1.0, 0.39, state, clock=lambda i: (50 - i % 2) * SECOND)
     assert arm.name == 'STOPPING'
     assert arm.fault.startswith('the clock went back by 1.000 s')
 
@@ -397,14 +398,6 @@ def test_without_a_clock_there_is_no_torque():
         arm.take(0.0, [0.0, 0.0], clock=0)
     assert arm.path.buffer.rejected == {'no clock': 1}
     assert not arm.path.buffer.is_complete
-
-
-def test_the_next_tick_is_when_the_newest_state_becomes_stale():
-    arm, state = active()
-    arm.take(1.01, state)
-    assert arm.path.next_tick_in(1.04) == pytest.approx(0.07)
-    arm.path.disable(1.04, 'request')
-    assert arm.path.next_tick_in(1.04) == STOP_PERIOD
 
 
 number = st.one_of(st.floats(-3, 3), st.floats(allow_nan=True, allow_infinity=True))

@@ -7,12 +7,13 @@ import subprocess
 import sys
 import time
 
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamics_interfaces.msg import OutputState
 from dynamics_interfaces.srv import GetGravityTorque
-from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.srv import GetParameters, SetParameters
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.parameter import Parameter
+from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.qos import qos_profile_sensor_data, QoSDurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
@@ -64,8 +65,15 @@ class NodeProcess:
         output, _ = self.process.communicate(timeout=timeout)
         return self.process.returncode, output
 
+    def end(self, number=signal.SIGINT, timeout=PATIENCE):
+        """Send a signal and wait for the end; return the exit code and everything printed."""
+        self.send(number)
+        return self.wait(timeout)
+
     def close(self):
-        """End the process, and check that it has printed no traceback."""
+        """End the process if it runs, and check that it has printed no traceback."""
+        if self.process.stdout.closed:
+            return
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGINT)
         try:
@@ -179,6 +187,11 @@ class Client:
         [result] = self.ask(SetParameters, action, parameters=[message]).results
         return result
 
+    def node_parameter(self, name):
+        """Return a parameter of the node."""
+        value = parameter_value_to_python(self.ask(GetParameters, names=[name]).values[0])
+        return value if isinstance(value, (bool, int, float, str)) else list(value)
+
     def until_heard(self, action):
         """Wait until the node receives the joint states that `action` publishes."""
         # Discovery has two sides: the client may know the subscription of the node before the
@@ -190,12 +203,80 @@ class Client:
         """Enable or disable the output."""
         return self.call(SetBool, '/dynamics_node/enable', SetBool.Request(data=value), action)
 
-    def output_is(self, name):
-        """Return a condition: the output of the node is in a state."""
-        return lambda: bool(self.outputs) and self.outputs[-1].name == name
+    def activate(self, action):
+        """Enable the output, again if states were late, and wait until it is ACTIVE."""
+        self.until_heard(action)
+        self.until(lambda: self._became_active(action), action)
+        self.until(lambda: self.commands, action)
+
+    def _became_active(self, action):
+        before = len(self.outputs)
+        answer = self.enable(True, action)
+        # A busy machine may stop this process for a tenth of a second.
+        if not answer.success and 'no joint state within' in answer.message:
+            return False
+        assert answer.success, answer.message
+
+        def faults():
+            return [output.reason for output in self.outputs[before:] if output.name == 'FAULT']
+
+        self.until(lambda: self.output == 'ACTIVE' or faults(), action)
+        assert all('joint_states stale' in reason for reason in faults()), faults()
+        return self.output == 'ACTIVE'
+
+    @property
+    def command(self):
+        """Efforts of the newest recorded command; None before the first."""
+        return self.commands[-1][1] if self.commands else None
+
+    @property
+    def output(self):
+        """Name of the newest recorded output state; '' before the first."""
+        return self.outputs[-1].name if self.outputs else ''
+
+    @property
+    def reason(self):
+        """Reason of the newest recorded output state; '' before the first."""
+        return self.outputs[-1].reason if self.outputs else ''
+
+    def until_output(self, name, action=None, timeout=PATIENCE):
+        """Wait until the output of the node is in a state."""
+        self.until(lambda: self.output == name, action, timeout)
 
     def close(self):
-        """Shut ROS down."""
+        """Shut ROS down; again without effect."""
+        if not self.context.ok():
+            return
+        nodes = self.executor.get_nodes()  # also those of controllers beside the client
         self.executor.shutdown()
-        self.node.destroy_node()
+        for node in nodes:
+            node.destroy_node()
         rclpy.shutdown(context=self.context)
+
+
+class Diagnostics:
+    """The newest diagnostics of the node, by part: 'joint states', 'output', ..."""
+
+    def __init__(self, client):
+        self._received = client.listen(DiagnosticArray, '/diagnostics')
+
+    @property
+    def newest(self):
+        """All statuses of the newest message."""
+        return list(self._received[-1].status) if self._received else []
+
+    @property
+    def text(self):
+        """The messages of all parts."""
+        return '\n'.join(status.message for status in self.newest)
+
+    def status(self, part):
+        """Return the status of a part; an empty one before the first."""
+        found = [status for status in self.newest if status.name == f'dynamics_node: {part}']
+        return found[0] if found else DiagnosticStatus()
+
+    def message(self, part):
+        return self.status(part).message
+
+    def values(self, part):
+        return {item.key: item.value for item in self.status(part).values}

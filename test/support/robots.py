@@ -8,6 +8,7 @@ import numpy as np
 ROBOTS = Path(__file__).parents[2] / 'config' / 'robots'
 PENDULUM = ROBOTS / 'pendulum.urdf'
 ARM7 = ROBOTS / 'arm7.urdf'
+HOLD = 0.5 * 3 * 0.7 * 9.81  # gravity torque of the pendulum at 0, level, N m
 
 
 def public_robots():

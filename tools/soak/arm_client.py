@@ -109,11 +109,6 @@ class ArmClient(Client):
         return self.time_of(time.time_ns())
 
     @property
-    def output(self):
-        """Name of the newest output state; '' before the first."""
-        return self.outputs[-1].name if self.outputs else ''
-
-    @property
     def state(self):
         """Newest position, velocity and effort of the driven joints; shape (n,) each."""
         return self._read(self.truth[-1][1])
