@@ -8,15 +8,7 @@ from setuptools import find_packages, setup
 
 package_name = 'dynamics_node'
 # `ros2 run dynamics_node NAME`; pip installs them for everything on PATH, as dynamics-NAME.
-programs = (
-    'dynamics_node',
-    'effort_guard',
-    'markers',
-    'simulated_robot',
-    'demo',
-    'report',
-    'identify',
-)
+programs = ('dynamics_node', 'effort_guard', 'markers', 'simulated_robot', 'demo', 'report')
 # colcon runs these commands; pip builds a wheel.
 is_for_ros = bool({'develop', 'install'} & set(sys.argv))
 

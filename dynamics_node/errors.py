@@ -59,10 +59,6 @@ class SingularMassMatrixError(DynamicsError, ArithmeticError):
     """The mass matrix is not positive definite, so accelerations are not defined."""
 
 
-class RecordingError(DynamicsError, ValueError):
-    """A recording cannot be read, or does not support an identification."""
-
-
 class ParameterError(DynamicsError, ValueError):
     """A parameter value is refused: name, expected, got."""
 

@@ -21,7 +21,6 @@ _REMEDIES = {
     ),
     'mujoco': "install what the demo needs: pip install 'dynamics_node[demo]'",
     'matplotlib': "install what the demo needs: pip install 'dynamics_node[demo]'",
-    'rosbags': "install what recordings need: pip install 'dynamics_node[identify]'",
     'rich': "install what reports need: pip install 'dynamics_node[report]'",
 }
 
@@ -91,8 +90,3 @@ def demo() -> int:
 def report() -> int:
     """Run the model report."""
     return _run('report', 'report.__main__')
-
-
-def identify() -> int:
-    """Run the identification of a robot from recordings."""
-    return _run('identify', 'identification.__main__')

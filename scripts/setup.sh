@@ -57,7 +57,7 @@ logged() {
 }
 
 install_packages() {
-    local -a groups=(--group build) extras=(--extra demo --extra report --extra identify)
+    local -a groups=(--group build) extras=(--extra demo --extra report)
     [[ $mode != wheels ]] || groups+=(--group "ros-$ros_release")
     [[ $purpose == demo ]] || groups+=(--group test)
     [[ $mode == wheels ]] || ! has_numpy_1 || groups+=(--group sourced-ros)

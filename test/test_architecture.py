@@ -18,7 +18,7 @@ STREET = {
     'codegen': {'errors', 'kernels'},
     'dynamics': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'codegen'},
     'report': {'errors', 'inertia', 'urdf', 'model', 'dynamics'},
-    'identification': {'errors', 'inertia', 'urdf', 'model', 'dynamics', 'report'},
+    'identification': {'errors', 'urdf', 'model', 'inertia'},
     'safety': {'errors'},
     'ros': {'errors', 'inertia', 'urdf', 'model', 'kernels', 'dynamics', 'safety'},
     'visualization': {'errors', 'inertia', 'urdf', 'model', 'dynamics', 'ros'},
@@ -41,10 +41,6 @@ OPTIONAL = {
     'report/terminal': {'rich'},
     'report/__main__': {'rich'},
     'report/html': {'plotly', 'jinja2', 'markupsafe'},
-    'identification/recordings/rosbag': {'rosbags'},
-    'identification/terminal': {'rich'},
-    'identification/page': {'plotly', 'jinja2', 'markupsafe'},
-    'identification/__main__': {'rich'},
 }
 SOURCES = sorted(PACKAGE.rglob('*.py'))
 

@@ -17,7 +17,6 @@ PYTHON_KEYS = {
     'python3-jinja2',
     'python3-rich',
     'python3-mujoco-pip',
-    'python3-rosbags-pip',
     'python3-pytest',
     'python3-hypothesis',
 }

@@ -1,6 +1,6 @@
 """
-Identification: from recordings of a moving robot to a URDF whose masses are right.
+Write-back of better inertial and friction parameters: into the URDF and the node's parameters.
 
-What may change here: signal processing, estimation and its checks. Without ROS.
+What may change here: where a number is written. Without ROS.
 
 """

@@ -1,11 +1,10 @@
 """The regressor: linear in the ten numbers of every body, by three routes."""
 
+from dynamics_node import ArgumentError, RobotModel
 import numpy as np
 import pytest
 from support.pinocchio_oracle import PinocchioOracle
 from support.robots import ARM7, public_robot, random_urdf
-
-from dynamics_node import ArgumentError, RobotModel
 
 PUBLIC = [
     'panda_description/urdf/panda.urdf',

@@ -313,14 +313,13 @@ def test_the_largest_payload_depends_on_the_parameters_and_may_be_infinite(share
     assert answer.limiting_joint == ARM.joint_names[1]
     # And after the offsets, of which only the size counts.
     offsets = 0.1 * low * np.resize([1.0, -1.0], N)
-    result = client.set_node_parameter('effort_offset', offsets.tolist())
-    assert result.successful, result.reason
+    change('effort_offset', offsets.tolist())
     answer = ask()
     np.testing.assert_allclose(answer.effort_limits, 0.9 * low / 1.25, rtol=1e-14)
     assert answer.mass == pytest.approx(largest(0.9 * low / 1.25), rel=1e-12)
-    assert client.set_node_parameter('effort_offset', (100.0 * low).tolist()).successful
+    change('effort_offset', (100.0 * low).tolist())
     assert ask().mass == 0.0
-    assert client.set_node_parameter('effort_offset', []).successful
+    change('effort_offset', [])
     # A joint without effort has no limit.
     change('effort_scale', [1.25, 0.0, *[1.25] * (N - 2)])
     answer = ask()
