@@ -513,19 +513,19 @@ def test_an_offset_is_part_of_the_command_and_fades_with_it(client, drive, publi
     offset = 0.25 * HOLD
     drive(effort_scale='[0.5]', effort_offset=f'[{offset}]')
     full = 0.5 * HOLD + offset
-    client.until(lambda: client.commands[-1][1] == [pytest.approx(full)], publish)
+    client.until(lambda: client.command == [pytest.approx(full)], publish)
     efforts = efforts_of(client)
     # The start ramp fades it in: no step, and not one command that begins with it.
     assert efforts[0] < 0.2 * full
     assert np.abs(np.diff(efforts)).max() <= (MAX_RAMP_STEP / 0.5 + 0.02) * full
     client.commands.clear()
     assert client.set_node_parameter('effort_offset', [-offset], publish).successful
-    client.until(lambda: client.commands[-1][1] == [pytest.approx(full - 2 * offset)], publish)
+    client.until(lambda: client.command == [pytest.approx(full - 2 * offset)], publish)
     efforts = efforts_of(client)
     assert np.abs(np.diff(efforts)).max() <= (MAX_RAMP_STEP / 0.5 + 0.02) * 2 * offset + 1e-9
     assert len(np.unique(efforts)) >= 4
     client.commands.clear()
     assert client.enable(False, publish).success
-    client.until(client.output_is('READY'), publish)
+    client.until_output('READY', publish)
     client.during(0.3, publish)
     assert_ramped_to_zero(efforts_of(client))
